@@ -1,0 +1,42 @@
+// The Huffman codes of one mesh. Trained by the encoder, carried in the base resource.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "shared/bits/bit_reader.h"
+#include "shared/bits/bit_writer.h"
+#include "shared/bits/huffman.h"
+#include "shared/result.h"
+
+namespace meshfront {
+
+inline constexpr unsigned kMaxLevel = 31;
+
+// Codes differ by how far a node's level is from the finest one: 0, 1, 2, 3 or more.
+inline constexpr unsigned kLevelContexts = 4;
+inline constexpr unsigned kMaxRunsCoded = 6;  // more cyclic runs than that: plain bits
+
+struct CodeTables {
+  unsigned maxLevel = 0;    // finest significance level of any node, <= kMaxLevel
+  unsigned valueClasses = 0;  // bit lengths of d_b, d_c run below this (quantisation bits + 1)
+  // Lengths in bits of the cut region, by leaf flags (u * 2 + t) and class; ascending.
+  std::array<std::vector<uint16_t>, 4> cutLengths;
+  std::array<HuffmanCode, kLevelContexts> header;   // symbols: (u, t, class) numbered in that order
+  std::array<HuffmanCode, kLevelContexts> levels;   // level of child - own level
+  std::array<HuffmanCode, kLevelContexts> classes;  // class b * valueClasses + class c
+  std::array<HuffmanCode, 64> residual;  // by residualContext(): class of the residual
+  std::array<HuffmanCode, kMaxRunsCoded + 1> cyclicRuns;      // [R]: run of l * R + run of r
+  std::array<HuffmanCode, 2 * (kMaxRunsCoded + 1)> linearRuns;  // see ring_cut.h
+
+  [[nodiscard]] unsigned levelContext(unsigned level) const {
+    const unsigned distance = level > maxLevel ? 0 : maxLevel - level;
+    return distance < kLevelContexts ? distance : kLevelContexts - 1;
+  }
+};
+
+void writeCodeTables(BitWriter& out, const CodeTables& tables);
+[[nodiscard]] Result<CodeTables> readCodeTables(BitReader& in);  // untrusted
+
+}  // namespace meshfront

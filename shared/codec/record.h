@@ -1,0 +1,38 @@
+// A record: everything about one vertex split that is not already known at its node.
+//
+// Layout, bits most significant first; every field parses without any other record, given only the
+// node's own level (from its parent's record, the base mesh, or the chunk's band):
+//   header   Huffman(by level): leaf flag of u, leaf flag of t, class of the cut region's length
+//   levels   for u, then t, unless a leaf: Huffman(by level): level of the child - own level
+//   classes  Huffman(by level): bit lengths of |d_b| and |d_c|, jointly; then Huffman(by the larger
+//            of them and the level): bit length of |residual of d_a|
+//   values   for b, c, a, unless zero: sign bit (1 = negative), then the bits below the top one
+//   cut      the cut region (ring_cut.h), its length given by the header's class
+// a is the axis of the largest component of the node's predicted normal, b and c the following axes
+// cyclically (position_prediction.h); parsing needs neither.
+#pragma once
+
+#include <cstdint>
+
+#include "shared/bits/bit_reader.h"
+#include "shared/codec/code_tables.h"
+
+namespace meshfront {
+
+struct Record {
+  bool leftIsLeaf = false;
+  bool rightIsLeaf = false;
+  uint8_t leftLevel = 0;  // significance levels, >= the node's own; of no meaning for a leaf
+  uint8_t rightLevel = 0;
+  int32_t deltaB = 0;  // grid steps
+  int32_t deltaC = 0;
+  int32_t residualA = 0;
+  uint32_t cutBegin = 0;  // bits from the record's first bit
+  uint32_t cutEnd = 0;    // == the record's length in bits
+};
+
+// Untrusted. Reads one record of a node at significance level `level`; advances `in` behind it.
+// On damage the reader is left overrun() and the record's content is arbitrary but in range.
+Record readRecord(BitReader& in, const CodeTables& tables, unsigned level);
+
+}  // namespace meshfront
