@@ -23,7 +23,8 @@ class BitWriter {
   }
   void writeBit(bool bit) { write(bit ? 1 : 0, 1); }
 
-  // Appends `bitCount` bits of `source`, beginning at its bit `bitOffset`. The range must lie inside.
+  // Appends `bitCount` bits of `source`, beginning at its bit `bitOffset`. The range must lie
+  // inside.
   void append(std::span<const uint8_t> source, uint64_t bitOffset, uint64_t bitCount);
 
   [[nodiscard]] uint64_t bitCount() const { return bytes_.size() * 8 + pendingBits_; }

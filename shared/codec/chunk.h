@@ -32,7 +32,8 @@ struct RecordEntry {
   uint64_t bitOffset = 0;  // from the first bit of the chunk's (or answer's) bytes
 };
 
-// `records`: bits of one band's run; `entries[i]` says where record i lies in `source`, in preorder.
+// `records`: bits of one band's run; `entries[i]` says where record i lies in `source`, in
+// preorder.
 [[nodiscard]] std::vector<uint8_t> encodeChunk(unsigned band, std::span<const RecordEntry> entries,
                                                std::span<const uint8_t> source);
 

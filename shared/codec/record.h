@@ -15,6 +15,7 @@
 #include <cstdint>
 
 #include "shared/bits/bit_reader.h"
+#include "shared/bits/bit_writer.h"
 #include "shared/codec/code_tables.h"
 
 namespace meshfront {
@@ -34,5 +35,12 @@ struct Record {
 // Untrusted. Reads one record of a node at significance level `level`; advances `in` behind it.
 // On damage the reader is left overrun() and the record's content is arbitrary but in range.
 Record readRecord(BitReader& in, const CodeTables& tables, unsigned level);
+
+// Writes everything in front of the cut region; the tables must have a code for every symbol used.
+void writeRecordHead(BitWriter& out, const Record& record, unsigned cutClass,
+                     const CodeTables& tables, unsigned level);
+
+// Bit length of a value's magnitude: 0 for 0, 1 for +-1, 2 for +-2 and +-3, ...
+[[nodiscard]] unsigned valueClassOf(int32_t value);
 
 }  // namespace meshfront

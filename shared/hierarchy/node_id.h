@@ -38,7 +38,8 @@ struct NodeId {
   }
 
   friend bool operator==(const NodeId&, const NodeId&) = default;
-  // Preorder: by tree, then parents before children, left before right. The order of all wire lists.
+  // Preorder: by tree, then parents before children, left before right. The order of all wire
+  // lists.
   friend std::strong_ordering operator<=>(const NodeId& a, const NodeId& b) {
     if (a.tree != b.tree) return a.tree <=> b.tree;
     if (a.path != b.path) return a.path <=> b.path;

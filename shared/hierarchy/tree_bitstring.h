@@ -5,7 +5,8 @@
 //   number of trees            Exp-Golomb, order 3
 //   for each tree, ascending:
 //     tree-id - last - 1       Exp-Golomb, order 0 (the first tree: its id)
-//     its root's visit         two bits a visited node, left then right, 1 = a wanted node lies there;
+//     its root's visit         two bits a visited node, left then right, 1 = a wanted node lies
+//     there;
 //                              00 = this node is itself wanted; then the visits of the children
 //   zero bits up to a whole byte
 // There is exactly one encoding of a set; decoding refuses every other one.

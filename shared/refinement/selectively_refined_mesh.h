@@ -45,23 +45,23 @@ class SelectivelyRefinedMesh {
   [[nodiscard]] bool isActive(NodeIndex node) const;
   [[nodiscard]] bool isLeaf(NodeIndex node) const;
   [[nodiscard]] bool isVirtual(NodeIndex node) const;
-  [[nodiscard]] unsigned level(NodeIndex node) const;        // of no meaning for a leaf
-  [[nodiscard]] VertexSlot slot(NodeIndex node) const;       // of an active node
-  [[nodiscard]] bool hasRecord(NodeIndex node) const;        // was split before: resplit() works
-  [[nodiscard]] NodeIndex parent(NodeIndex node) const;      // kNone for a root
+  [[nodiscard]] unsigned level(NodeIndex node) const;    // of no meaning for a leaf
+  [[nodiscard]] VertexSlot slot(NodeIndex node) const;   // of an active node
+  [[nodiscard]] bool hasRecord(NodeIndex node) const;    // was split before: resplit() works
+  [[nodiscard]] NodeIndex parent(NodeIndex node) const;  // kNone for a root
   // Children of a node that has been split once; {left, right}.
   [[nodiscard]] std::pair<NodeIndex, NodeIndex> children(NodeIndex node) const;
 
-  [[nodiscard]] uint64_t splitsApplied() const;    // splits in the front now
-  [[nodiscard]] uint64_t recordsHeld() const;      // distinct records received
-  [[nodiscard]] uint64_t splitCount() const;       // of the full mesh
+  [[nodiscard]] uint64_t splitsApplied() const;  // splits in the front now
+  [[nodiscard]] uint64_t recordsHeld() const;    // distinct records received
+  [[nodiscard]] uint64_t splitCount() const;     // of the full mesh
   [[nodiscard]] bool complete() const { return splitsApplied() == splitCount(); }
   [[nodiscard]] uint64_t drawnTriangleCount() const;
   [[nodiscard]] const BaseMesh& base() const;
 
   // --- changing it -----------------------------------------------------------------------------
-  // Untrusted record bits: [bitOffset, bitOffset + bitLength) of `bytes`. The node must be active and
-  // no leaf. On an error the mesh is unchanged. The bits are copied and kept.
+  // Untrusted record bits: [bitOffset, bitOffset + bitLength) of `bytes`. The node must be active
+  // and no leaf. On an error the mesh is unchanged. The bits are copied and kept.
   Result<void> split(NodeIndex node, std::span<const uint8_t> bytes, uint64_t bitOffset,
                      uint32_t bitLength);
   [[nodiscard]] bool canCollapse(NodeIndex node) const;  // both children are active

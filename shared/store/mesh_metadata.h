@@ -14,15 +14,15 @@
 namespace meshfront {
 
 struct MeshMetadata {
-  std::string name;                 // [A-Za-z0-9._-]{1,64}, not starting with a dot
-  std::string revision;             // 32 lower-case hex digits: SHA-256 over the pack's content, cut
-  uint64_t vertexCount = 0;         // of the finest mesh, virtual ones not counted
-  uint64_t triangleCount = 0;       // likewise
+  std::string name;            // [A-Za-z0-9._-]{1,64}, not starting with a dot
+  std::string revision;        // 32 lower-case hex digits: SHA-256 over the pack's content, cut
+  uint64_t vertexCount = 0;    // of the finest mesh, virtual ones not counted
+  uint64_t triangleCount = 0;  // likewise
   uint64_t baseVertexCount = 0;
-  uint64_t baseTriangleCount = 0;   // drawn ones
+  uint64_t baseTriangleCount = 0;  // drawn ones
   uint64_t splitCount = 0;
   unsigned maxLevel = 0;
-  unsigned maxDepth = 0;            // of any node
+  unsigned maxDepth = 0;  // of any node
   Quantization quantization;
   std::array<double, 3> boundsMin{};  // world
   std::array<double, 3> boundsMax{};

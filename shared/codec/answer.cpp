@@ -1,0 +1,34 @@
+#include "shared/codec/answer.h"
+
+#include "shared/bits/crc32c.h"
+#include "shared/codec/subtree_reader.h"
+
+namespace meshfront {
+
+Result<std::vector<RecordEntry>> parseAnswer(
+    std::span<const uint8_t> bytes, std::span<const NodeId> wanted, const Expansion& expansion,
+    const CodeTables& tables,
+    const std::function<std::optional<unsigned>(const NodeId&)>& levelOf) {
+  const auto content = checkedContent(bytes, "answer");
+  if (!content) return tl::unexpected(content.error());
+  BitReader in(*content);
+  std::vector<RecordEntry> entries;
+  // A record is free of charge only in degenerate tables; this bounds the entries by the bytes.
+  const uint64_t limit = in.left() + wanted.size() + 1;
+  const auto descend = [&](unsigned generation, unsigned level) {
+    return expansion.significance ? level <= *expansion.significance
+                                  : generation <= expansion.levels;
+  };
+  for (const NodeId& node : wanted) {
+    const auto level = levelOf(node);
+    if (!level) return fail("answer: the level of a requested node is not known");
+    if (entries.size() >= limit || !readSubtree(in, tables, node, *level, descend, limit, entries))
+      return fail("answer: fewer records than asked for, or damaged ones");
+  }
+  if (entries.size() >= limit) return fail("answer: more records than its bytes can hold");
+  if (in.left() >= 8 || in.read(static_cast<unsigned>(in.left())) != 0)
+    return fail("answer: bits behind the last record");
+  return entries;
+}
+
+}  // namespace meshfront
