@@ -17,7 +17,7 @@ void writeCodeTables(BitWriter& out, const CodeTables& tables) {
   out.write(tables.valueClasses, 5);
   for (const auto& lengths : tables.cutLengths) {
     out.write(lengths.size(), kClassCountBits);
-    uint64_t next = 0;
+    uint64_t next = 1;
     for (const uint16_t length : lengths) {
       writeExpGolomb(out, length - next, kCutLengthOrder);
       next = uint64_t{length} + 1;
@@ -42,7 +42,7 @@ Result<CodeTables> readCodeTables(BitReader& in) {
     return fail("code tables: values longer than any grid");
   for (auto& lengths : tables.cutLengths) {
     const uint64_t count = in.read(kClassCountBits);
-    uint64_t next = 0;
+    uint64_t next = 1;
     for (uint64_t i = 0; i < count; ++i) {
       const uint64_t length = next + readExpGolomb(in, kCutLengthOrder);
       if (length > kMaxCutLength) return fail("code tables: a cut region longer than any ring's");

@@ -22,7 +22,8 @@ inline constexpr unsigned kMaxRunsCoded = 6;  // more cyclic runs than that: pla
 struct CodeTables {
   unsigned maxLevel = 0;      // finest significance level of any node, <= kMaxLevel
   unsigned valueClasses = 0;  // bit lengths of d_b, d_c run below this (quantisation bits + 1)
-  // Lengths in bits of the cut region, by leaf flags (u * 2 + t) and class; ascending.
+  // Lengths in bits of the cut region, by leaf flags (u * 2 + t) and class; ascending, at
+  // least 1: so every record takes a bit, and bytes bound the number of records.
   std::array<std::vector<uint16_t>, 4> cutLengths;
   std::array<HuffmanCode, kLevelContexts> header;   // symbols: (u, t, class) numbered in that order
   std::array<HuffmanCode, kLevelContexts> levels;   // level of child - own level

@@ -10,8 +10,8 @@
 //  - a *vertex slot* holds an active front vertex. Splitting s keeps its slot for the left child u
 //    (half-edge collapse: u stands where s stood) and takes another one for the right child t.
 //  - a *face slot* holds a triangle: three corners by vertex slot. The two faces of a split take a
-//    pair of neighbouring slots. Free slots and faces at virtual vertices have all corners equal to
-//    zero in drawnCorners().
+//    pair of neighbouring slots. Free slots and faces at virtual vertices are {0, 0, 0} in
+//    drawnCorners().
 // Single-threaded; owned by one thread at a time.
 #pragma once
 
@@ -20,16 +20,19 @@
 #include <span>
 #include <vector>
 
+#include "shared/bits/bit_store.h"
 #include "shared/codec/base_mesh.h"
+#include "shared/codec/position_prediction.h"
 #include "shared/codec/record.h"
+#include "shared/codec/ring_cut.h"
 #include "shared/hierarchy/node_id.h"
+#include "shared/refinement/half_edge_mesh.h"
 #include "shared/result.h"
 
 namespace meshfront {
 
 using NodeIndex = uint32_t;   // a node met so far; stable for the mesh's lifetime
 using VertexSlot = uint32_t;  // a front vertex's place
-using FaceSlot = uint32_t;
 inline constexpr uint32_t kNone = UINT32_MAX;
 
 class SelectivelyRefinedMesh {
@@ -37,27 +40,31 @@ class SelectivelyRefinedMesh {
   [[nodiscard]] static Result<SelectivelyRefinedMesh> fromBase(BaseMesh base);
 
   // --- the front -------------------------------------------------------------------------------
-  [[nodiscard]] size_t vertexSlotCount() const;  // slots in use or free: size of positions()
+  // Slots in use or free: size of positions().
+  [[nodiscard]] size_t vertexSlotCount() const { return positions_.size(); }
   // The front node in a slot; kNone for a free slot. Virtual vertices are nodes too.
-  [[nodiscard]] NodeIndex nodeAt(VertexSlot slot) const;
+  [[nodiscard]] NodeIndex nodeAt(VertexSlot slot) const { return nodeAt_[slot]; }
   [[nodiscard]] std::optional<NodeIndex> find(const NodeId& id) const;  // any node met so far
-  [[nodiscard]] NodeId id(NodeIndex node) const;
+  [[nodiscard]] size_t nodeCount() const { return nodes_.size(); }      // nodes met so far
+  [[nodiscard]] NodeId id(NodeIndex node) const { return ids_[node]; }
   [[nodiscard]] bool isActive(NodeIndex node) const;
-  [[nodiscard]] bool isLeaf(NodeIndex node) const;
-  [[nodiscard]] bool isVirtual(NodeIndex node) const;
-  [[nodiscard]] unsigned level(NodeIndex node) const;    // of no meaning for a leaf
-  [[nodiscard]] VertexSlot slot(NodeIndex node) const;   // of an active node
-  [[nodiscard]] bool hasRecord(NodeIndex node) const;    // was split before: resplit() works
-  [[nodiscard]] NodeIndex parent(NodeIndex node) const;  // kNone for a root
-  // Children of a node that has been split once; {left, right}.
-  [[nodiscard]] std::pair<NodeIndex, NodeIndex> children(NodeIndex node) const;
+  [[nodiscard]] bool isLeaf(NodeIndex node) const { return nodes_[node].isLeaf; }
+  [[nodiscard]] bool isVirtual(NodeIndex node) const { return isVirtualSlot(node); }
+  // Significance level; of no meaning for a leaf.
+  [[nodiscard]] unsigned level(NodeIndex node) const { return nodes_[node].level; }
+  [[nodiscard]] VertexSlot slot(NodeIndex node) const { return nodes_[node].slot; }  // if active
+  // Was split before: resplit() works.
+  [[nodiscard]] bool hasRecord(NodeIndex node) const { return nodes_[node].hasRecord; }
+  [[nodiscard]] NodeIndex parent(NodeIndex node) const { return nodes_[node].parent; }  // or kNone
+  // Children of a node that has been split once, the right one behind the left one; else kNone.
+  [[nodiscard]] NodeIndex leftChild(NodeIndex node) const { return nodes_[node].leftChild; }
 
-  [[nodiscard]] uint64_t splitsApplied() const;  // splits in the front now
-  [[nodiscard]] uint64_t recordsHeld() const;    // distinct records received
-  [[nodiscard]] uint64_t splitCount() const;     // of the full mesh
+  [[nodiscard]] uint64_t splitsApplied() const { return splitsApplied_; }  // in the front now
+  [[nodiscard]] uint64_t recordsHeld() const { return recordsHeld_; }      // distinct ones
+  [[nodiscard]] uint64_t splitCount() const { return base_.splitCount; }   // of the full mesh
   [[nodiscard]] bool complete() const { return splitsApplied() == splitCount(); }
-  [[nodiscard]] uint64_t drawnTriangleCount() const;
-  [[nodiscard]] const BaseMesh& base() const;
+  [[nodiscard]] uint64_t drawnTriangleCount() const { return drawnCount_; }
+  [[nodiscard]] const BaseMesh& base() const { return base_; }
 
   // --- changing it -----------------------------------------------------------------------------
   // Untrusted record bits: [bitOffset, bitOffset + bitLength) of `bytes`. The node must be active
@@ -69,11 +76,12 @@ class SelectivelyRefinedMesh {
   Result<void> resplit(NodeIndex node);                  // requires hasRecord() and isActive()
 
   // --- drawing ---------------------------------------------------------------------------------
-  [[nodiscard]] std::span<const GridPosition> positions() const;  // by vertex slot
-  // By face slot, corners by vertex slot; {0,0,0} for what is not drawn.
-  [[nodiscard]] std::span<const Triangle> drawnCorners() const;
-  // Grows with every change to a slot's content; a viewer compares it with the last it uploaded.
-  [[nodiscard]] uint64_t changeCount() const;
+  // By vertex slot; of no meaning for free slots and virtual vertices.
+  [[nodiscard]] std::span<const GridPosition> positions() const { return positions_; }
+  // By face slot, corners by vertex slot; {0, 0, 0} for what is not drawn.
+  [[nodiscard]] std::span<const Triangle> drawnCorners() const { return drawn_; }
+  // Grows with every change; a viewer compares it with the last one it uploaded.
+  [[nodiscard]] uint64_t changeCount() const { return changes_; }
 
   // The drawn triangles as a plain mesh: used vertices only, in slot order.
   struct Snapshot {
@@ -81,6 +89,49 @@ class SelectivelyRefinedMesh {
     std::vector<Triangle> triangles;
   };
   [[nodiscard]] Snapshot snapshot() const;
+
+ private:
+  struct Node {
+    NodeIndex parent = kNone;
+    NodeIndex leftChild = kNone;
+    VertexSlot slot = kNone;
+    FaceSlot faces = 0;         // of a split node: its pair
+    uint64_t recordOffset = 0;  // in records_
+    uint32_t recordLength = 0;
+    bool hasRecord = false;
+    PredictedNormal normal{0, 0, kNormalLength};
+    uint8_t level = 0;
+    bool isLeaf = false;
+  };
+
+  Result<void> apply(NodeIndex node, std::span<const uint8_t> bytes, uint64_t bitOffset,
+                     uint32_t bitLength);
+  [[nodiscard]] FaceKey keyOf(FaceSlot face) const;
+  [[nodiscard]] bool isVirtualSlot(uint32_t slot) const {
+    return slot >= firstVirtual_ && slot < endVirtual_;
+  }
+  [[nodiscard]] uint64_t isDrawn(FaceSlot face) const { return drawn_[face] != Triangle{} ? 1 : 0; }
+  void updateDrawn(FaceSlot face);
+
+  BaseMesh base_;
+  uint32_t firstVirtual_ = 0;  // virtual vertices keep their slots, which equal their nodes
+  uint32_t endVirtual_ = 0;
+  std::vector<Node> nodes_;
+  std::vector<NodeId> ids_;        // by node
+  std::vector<NodeIndex> nodeAt_;  // by vertex slot
+  std::vector<GridPosition> positions_;
+  HalfEdgeMesh edges_;
+  std::vector<NodeIndex> creators_;  // by pair of face slots
+  std::vector<Triangle> drawn_;      // by face slot
+  BitStore records_;
+  uint64_t drawnCount_ = 0;
+  uint64_t splitsApplied_ = 0;
+  uint64_t recordsHeld_ = 0;
+  uint64_t changes_ = 0;
+  // Working space of apply().
+  std::vector<HalfEdge> ring_;
+  std::vector<NodeId> entries_;
+  RingWalkSpace space_;
 };
 
 }  // namespace meshfront
