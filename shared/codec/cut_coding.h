@@ -75,7 +75,7 @@ struct CutSymbols {
   struct Symbol {
     Kind kind;
     bool leftFirst;
-    uint16_t runs;
+    uint32_t runs;
     RunPair pair;
   };
   std::vector<Symbol> symbols;  // in the order chosen; reused between records
@@ -104,7 +104,7 @@ class CutRecorder {
 
  private:
   void add(CutSymbols::Kind kind, uint32_t runs, RunPair pair, bool leftFirst) {
-    out_.symbols.push_back({kind, leftFirst, static_cast<uint16_t>(runs), pair});
+    out_.symbols.push_back({kind, leftFirst, runs, pair});
   }
   CutSymbols& out_;
 };
