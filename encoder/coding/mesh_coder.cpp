@@ -208,7 +208,7 @@ void MeshCoder::trainTables() {
   CutStatistics cutStatistics;
   for (const Block& block : blocks_) cutStatistics.add(block.statistics);
   cutStatistics.train(tables_);
-  tables_.valueClasses = input_.quantizationBits + 1;
+  tables_.valueClasses = 2 * input_.quantizationBits;
 
   // Lengths of the cut regions, now that their codes are known.
   std::vector<uint16_t> cutBits(forest_.splitCount());
@@ -233,18 +233,18 @@ void MeshCoder::trainTables() {
   std::array<std::vector<uint64_t>, kLevelContexts> levels;
   std::array<std::vector<uint64_t>, kLevelContexts> classes;
   std::array<std::vector<uint64_t>, kResidualContexts> residual;
-  for (auto& h : levels) h.assign(kMaxLevel + 1, 0);
+  std::array<std::vector<uint64_t>, kLevelContexts> levelPairs;
+  for (auto& h : levels) h.assign(kLevelCount, 0);
+  for (auto& h : levelPairs) h.assign(kLevelCount * kLevelCount, 0);
   for (auto& h : classes) h.assign(joint, 0);
   for (auto& h : residual) h.assign(tables_.residualClasses(), 0);
-  const auto flagsOf = [](const Record& r) {
-    return (r.leftIsLeaf ? 2U : 0U) | (r.rightIsLeaf ? 1U : 0U);
-  };
   forEachSplit([&](uint32_t i, const Split& s) {
     const Record& r = s.record;
     const unsigned context = tables_.levelContext(s.level);
-    ++lengthHistogram[flagsOf(r)][cutBits[i]];
-    if (!r.leftIsLeaf) ++levels[context][r.leftLevel - s.level];
-    if (!r.rightIsLeaf) ++levels[context][r.rightLevel - s.level];
+    ++lengthHistogram[leafFlagsOf(r)][cutBits[i]];
+    const unsigned flags = leafFlagsOf(r);
+    if (flags == 0) ++levelPairs[context][levelPairSymbol(r, s.level)];
+    if (flags == 1 || flags == 2) ++levels[context][levelSymbol(r, s.level)];
     const unsigned b = valueClassOf(r.deltaB);
     const unsigned c = valueClassOf(r.deltaC);
     ++classes[context][b * tables_.valueClasses + c];
@@ -256,6 +256,7 @@ void MeshCoder::trainTables() {
     for (size_t i = 0; i < codes.size(); ++i) codes[i] = HuffmanCode::fromCounts(counts[i]);
   };
   train(tables_.levels, levels);
+  train(tables_.levelPairs, levelPairs);
   train(tables_.classes, classes);
   train(tables_.residual, residual);
 
@@ -263,7 +264,7 @@ void MeshCoder::trainTables() {
   for (auto& h : headers) h.assign(tables_.headerSymbols(), 0);
   std::array<std::array<double, 4>, kLevelContexts> flagCounts{};
   forEachSplit([&](uint32_t i, const Split& s) {
-    const unsigned flags = flagsOf(s.record);
+    const unsigned flags = leafFlagsOf(s.record);
     const auto& lengths = tables_.cutLengths[flags];
     const auto length = std::lower_bound(lengths.begin(), lengths.end(), cutBits[i]);
     const unsigned context = tables_.levelContext(s.level);
@@ -307,7 +308,7 @@ void MeshCoder::writeChunks() {
     blocks_[i / kBlock].cuts.read(position, symbols);
     writeCut(bits, symbols, tables_);
     const Record& r = s.record;
-    const unsigned flags = (r.leftIsLeaf ? 2U : 0U) | (r.rightIsLeaf ? 1U : 0U);
+    const unsigned flags = leafFlagsOf(r);
     const auto& lengths = tables_.cutLengths[flags];
     const auto length =
         std::lower_bound(lengths.begin(), lengths.end(), std::max<uint64_t>(bits.length(), 1));
@@ -325,15 +326,17 @@ void MeshCoder::writeChunks() {
 
     const unsigned context = tables_.levelContext(s.level);
     sums.header += tables_.header[context].length(tables_.headerSymbol(flags, cutClass));
-    if (!r.leftIsLeaf) sums.significance += tables_.levels[context].length(r.leftLevel - s.level);
-    if (!r.rightIsLeaf) sums.significance += tables_.levels[context].length(r.rightLevel - s.level);
+    if (flags == 0)
+      sums.significance += tables_.levelPairs[context].length(levelPairSymbol(r, s.level));
+    if (flags == 1 || flags == 2)
+      sums.significance += tables_.levels[context].length(levelSymbol(r, s.level));
     const unsigned b = valueClassOf(r.deltaB);
     const unsigned c = valueClassOf(r.deltaC);
     const unsigned a = valueClassOf(r.residualA);
     sums.positionClasses +=
         tables_.classes[context].length(b * tables_.valueClasses + c) +
         tables_.residual[CodeTables::residualContext(std::max(b, c), context)].length(a);
-    sums.positionValues += a + b + c;
+    sums.positionValues += valueBits(r.deltaB) + valueBits(r.deltaC) + valueBits(r.residualA);
     sums.cutPadding += *length - bits.length();
   });
   ChunkIndex index;

@@ -14,7 +14,7 @@ constexpr uint64_t kMaxCutLength = 4095;  // bits; the longest seen in practice 
 
 void writeCodeTables(BitWriter& out, const CodeTables& tables) {
   out.write(tables.maxLevel, 5);
-  out.write(tables.valueClasses, 5);
+  out.write(tables.valueClasses, 6);
   for (const auto& lengths : tables.cutLengths) {
     out.write(lengths.size(), kClassCountBits);
     uint64_t next = 1;
@@ -25,6 +25,7 @@ void writeCodeTables(BitWriter& out, const CodeTables& tables) {
   }
   for (const auto& code : tables.header) code.writeTo(out);
   for (const auto& code : tables.levels) code.writeTo(out);
+  for (const auto& code : tables.levelPairs) code.writeTo(out);
   for (const auto& code : tables.classes) code.writeTo(out);
   for (const auto& code : tables.residual) code.writeTo(out);
   for (unsigned runs = 2; runs <= kMaxRunsCoded; ++runs) {
@@ -37,8 +38,8 @@ void writeCodeTables(BitWriter& out, const CodeTables& tables) {
 Result<CodeTables> readCodeTables(BitReader& in) {
   CodeTables tables;
   tables.maxLevel = static_cast<unsigned>(in.read(5));
-  tables.valueClasses = static_cast<unsigned>(in.read(5));
-  if (tables.valueClasses > kMaxQuantizationBits + 1)
+  tables.valueClasses = static_cast<unsigned>(in.read(6));
+  if (tables.valueClasses > 2 * kMaxQuantizationBits)
     return fail("code tables: values longer than any grid");
   for (auto& lengths : tables.cutLengths) {
     const uint64_t count = in.read(kClassCountBits);
@@ -51,7 +52,8 @@ Result<CodeTables> readCodeTables(BitReader& in) {
     }
   }
   for (auto& code : tables.header) code = HuffmanCode::readFrom(in, tables.headerSymbols());
-  for (auto& code : tables.levels) code = HuffmanCode::readFrom(in, kMaxLevel + 1);
+  for (auto& code : tables.levels) code = HuffmanCode::readFrom(in, kLevelCount);
+  for (auto& code : tables.levelPairs) code = HuffmanCode::readFrom(in, kLevelCount * kLevelCount);
   const size_t joint = size_t{tables.valueClasses} * tables.valueClasses;
   for (auto& code : tables.classes) code = HuffmanCode::readFrom(in, joint);
   for (auto& code : tables.residual) code = HuffmanCode::readFrom(in, tables.residualClasses());

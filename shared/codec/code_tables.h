@@ -13,21 +13,25 @@
 namespace meshfront {
 
 inline constexpr unsigned kMaxLevel = 31;
+inline constexpr unsigned kLevelCount = kMaxLevel + 1;
 
 // Codes differ by how far a node's level is from the finest one: 0, 1, 2, 3 or more.
 inline constexpr unsigned kLevelContexts = 4;
-inline constexpr unsigned kResidualContexts = 16 * kLevelContexts;
+inline constexpr unsigned kMergedClasses = 2;
+inline constexpr unsigned kResidualContexts = 32 / kMergedClasses * kLevelContexts;
 inline constexpr unsigned kMaxRunsCoded = 6;  // more cyclic runs than that: plain bits
 
 struct CodeTables {
   unsigned maxLevel = 0;      // finest significance level of any node, <= kMaxLevel
-  unsigned valueClasses = 0;  // bit lengths of d_b, d_c run below this (quantisation bits + 1)
+  unsigned valueClasses = 0;  // of d_b and d_c, see record.h: 2 x quantisation bits
   // Lengths in bits of the cut region, by leaf flags (u * 2 + t) and class; ascending, at
   // least 1: so every record takes a bit, and bytes bound the number of records.
   std::array<std::vector<uint16_t>, 4> cutLengths;
-  std::array<HuffmanCode, kLevelContexts> header;   // symbols: (u, t, class) numbered in that order
-  std::array<HuffmanCode, kLevelContexts> levels;   // level of child - own level
-  std::array<HuffmanCode, kLevelContexts> classes;  // class b * valueClasses + class c
+  std::array<HuffmanCode, kLevelContexts> header;  // symbols: (u, t, class) numbered in that order
+  // Level of a child - own level: of the only child that is no leaf, or of both jointly.
+  std::array<HuffmanCode, kLevelContexts> levels;
+  std::array<HuffmanCode, kLevelContexts> levelPairs;           // u's * kLevelCount + t's
+  std::array<HuffmanCode, kLevelContexts> classes;              // class b * valueClasses + class c
   std::array<HuffmanCode, kResidualContexts> residual;          // class of the residual of d_a
   std::array<HuffmanCode, kMaxRunsCoded + 1> cyclicRuns;        // [R]: run of l * R + run of r
   std::array<HuffmanCode, 2 * (kMaxRunsCoded + 1)> linearRuns;  // see cut_coding.h
@@ -38,7 +42,7 @@ struct CodeTables {
   }
   // Given the larger of the classes of d_b and d_c.
   [[nodiscard]] static unsigned residualContext(unsigned largerClass, unsigned levelContext) {
-    return (largerClass < 15 ? largerClass : 15) * kLevelContexts + levelContext;
+    return (largerClass < 31 ? largerClass : 31) / kMergedClasses * kLevelContexts + levelContext;
   }
   // Number of a header symbol; leaf flags = u * 2 + t.
   [[nodiscard]] uint32_t headerSymbol(unsigned leafFlags, unsigned cutClass) const {
@@ -47,8 +51,8 @@ struct CodeTables {
     return symbol;
   }
   [[nodiscard]] size_t headerSymbols() const { return headerSymbol(4, 0); }
-  // Classes of the residual: one more bit than a difference of the grid's ends has, and zero.
-  [[nodiscard]] unsigned residualClasses() const { return valueClasses + 2; }
+  // The residual takes up to two bits more than a difference of two grid positions.
+  [[nodiscard]] unsigned residualClasses() const { return valueClasses + 4; }
 };
 
 void writeCodeTables(BitWriter& out, const CodeTables& tables);

@@ -7,27 +7,49 @@
 namespace meshfront {
 namespace {
 
-// The value of a class: a sign, then the bits below the leading one.
+// Bits behind the sign that a class leaves open.
+unsigned openBits(unsigned valueClass) {
+  return valueClass < 4 ? 0 : valueClass / 2 - 1;
+}
+
 int32_t readValue(BitReader& in, unsigned valueClass) {
   if (valueClass == 0) return 0;
-  const auto bits = static_cast<uint32_t>(in.read(valueClass));
-  const uint32_t top = 1U << (valueClass - 1);
-  const auto magnitude = static_cast<int32_t>(top | (bits & (top - 1)));
-  return (bits & top) != 0 ? -magnitude : magnitude;
+  const unsigned open = openBits(valueClass);
+  const uint32_t lead = valueClass < 2 ? valueClass : 2U | (valueClass & 1U);
+  const bool negative = in.readBit();
+  const auto magnitude = static_cast<int32_t>(lead << open | static_cast<uint32_t>(in.read(open)));
+  return negative ? -magnitude : magnitude;
 }
 
 void writeValue(BitWriter& out, int32_t value) {
-  const unsigned valueClass = valueClassOf(value);
-  if (valueClass == 0) return;
-  const uint32_t top = 1U << (valueClass - 1);
-  const uint32_t rest = static_cast<uint32_t>(std::abs(value)) & (top - 1);
-  out.write((value < 0 ? top : 0) | rest, valueClass);
+  if (value == 0) return;
+  out.writeBit(value < 0);
+  out.write(static_cast<uint32_t>(std::abs(value)), openBits(valueClassOf(value)));
 }
 
 }  // namespace
 
 unsigned valueClassOf(int32_t value) {
-  return static_cast<unsigned>(std::bit_width(static_cast<uint32_t>(std::abs(value))));
+  const auto magnitude = static_cast<uint32_t>(std::abs(value));
+  if (magnitude < 2) return magnitude;
+  const auto length = static_cast<unsigned>(std::bit_width(magnitude));
+  return 2 * (length - 1) + (magnitude >> (length - 2) & 1);
+}
+
+unsigned leafFlagsOf(const Record& record) {
+  return (record.leftIsLeaf ? 2U : 0U) | (record.rightIsLeaf ? 1U : 0U);
+}
+
+uint32_t levelSymbol(const Record& record, unsigned level) {
+  return (record.leftIsLeaf ? record.rightLevel : record.leftLevel) - level;
+}
+
+uint32_t levelPairSymbol(const Record& record, unsigned level) {
+  return (record.leftLevel - level) * kLevelCount + record.rightLevel - level;
+}
+
+unsigned valueBits(int32_t value) {
+  return value == 0 ? 0 : 1 + openBits(valueClassOf(value));
 }
 
 Record readRecord(BitReader& in, const CodeTables& tables, unsigned level) {
@@ -42,13 +64,18 @@ Record readRecord(BitReader& in, const CodeTables& tables, unsigned level) {
   record.leftIsLeaf = (leafFlags & 2) != 0;
   record.rightIsLeaf = (leafFlags & 1) != 0;
 
-  const auto readLevel = [&] {
-    const unsigned child = level + tables.levels[context].read(in);
-    if (child > tables.maxLevel) in.fail();
-    return static_cast<uint8_t>(std::min(child, tables.maxLevel));
+  const auto levelAbove = [&](unsigned difference) {
+    if (level + difference > tables.maxLevel) in.fail();
+    return static_cast<uint8_t>(std::min(level + difference, tables.maxLevel));
   };
-  if (!record.leftIsLeaf) record.leftLevel = readLevel();
-  if (!record.rightIsLeaf) record.rightLevel = readLevel();
+  if (leafFlags == 0) {
+    const uint32_t pair = tables.levelPairs[context].read(in);
+    record.leftLevel = levelAbove(pair / kLevelCount);
+    record.rightLevel = levelAbove(pair % kLevelCount);
+  } else if (leafFlags < 3) {
+    (record.leftIsLeaf ? record.rightLevel : record.leftLevel) =
+        levelAbove(tables.levels[context].read(in));
+  }
 
   const uint32_t joint = tables.classes[context].read(in);
   const unsigned classB = tables.valueClasses == 0 ? 0 : joint / tables.valueClasses;
@@ -74,10 +101,13 @@ Record readRecord(BitReader& in, const CodeTables& tables, unsigned level) {
 void writeRecordHead(BitWriter& out, const Record& record, unsigned cutClass,
                      const CodeTables& tables, unsigned level) {
   const unsigned context = tables.levelContext(level);
-  const unsigned leafFlags = (record.leftIsLeaf ? 2U : 0U) | (record.rightIsLeaf ? 1U : 0U);
+  const unsigned leafFlags = leafFlagsOf(record);
   tables.header[context].write(out, tables.headerSymbol(leafFlags, cutClass));
-  if (!record.leftIsLeaf) tables.levels[context].write(out, record.leftLevel - level);
-  if (!record.rightIsLeaf) tables.levels[context].write(out, record.rightLevel - level);
+  if (leafFlags == 0) {
+    tables.levelPairs[context].write(out, levelPairSymbol(record, level));
+  } else if (leafFlags < 3) {
+    tables.levels[context].write(out, levelSymbol(record, level));
+  }
   const unsigned classB = valueClassOf(record.deltaB);
   const unsigned classC = valueClassOf(record.deltaC);
   tables.classes[context].write(out, classB * tables.valueClasses + classC);

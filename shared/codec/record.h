@@ -3,10 +3,10 @@
 // Layout, bits most significant first; every field parses without any other record, given only the
 // node's own level (from its parent's record, the base mesh, or the chunk's band):
 //   header   Huffman(by level): leaf flag of u, leaf flag of t, class of the cut region's length
-//   levels   for u, then t, unless a leaf: Huffman(by level): level of the child - own level
-//   classes  Huffman(by level): bit lengths of |d_b| and |d_c|, jointly; then Huffman(by the larger
-//            of them and the level): bit length of |residual of d_a|
-//   values   for b, c, a, unless zero: sign bit (1 = negative), then the bits below the top one
+//   levels   Huffman(by level): level of the child that is no leaf - own level, or of both jointly
+//   classes  Huffman(by level): classes (valueClassOf) of d_b and d_c, jointly; then Huffman(by the
+//            larger of them and the level): class of the residual of d_a
+//   values   for b, c, a, unless zero: sign bit (1 = negative), then the bits the class leaves open
 //   cut      the cut region (ring_cut.h), its length given by the header's class
 // a is the axis of the largest component of the node's predicted normal, b and c the following axes
 // cyclically (position_prediction.h); parsing needs neither.
@@ -40,7 +40,15 @@ Record readRecord(BitReader& in, const CodeTables& tables, unsigned level);
 void writeRecordHead(BitWriter& out, const Record& record, unsigned cutClass,
                      const CodeTables& tables, unsigned level);
 
-// Bit length of a value's magnitude: 0 for 0, 1 for +-1, 2 for +-2 and +-3, ...
+// Symbols of a record's fields. Leaf flags: u * 2 + t. Levels: of the only child that is no leaf,
+// or of both.
+[[nodiscard]] unsigned leafFlagsOf(const Record& record);
+[[nodiscard]] uint32_t levelSymbol(const Record& record, unsigned level);
+[[nodiscard]] uint32_t levelPairSymbol(const Record& record, unsigned level);
+// A value's class: its magnitude's bit length and second-highest bit. 0 for 0, 1 for 1, 2 for 2,
+// 3 for 3, 4 for 4 and 5, 5 for 6 and 7, 6 for 8 to 11, ... (of magnitudes).
 [[nodiscard]] unsigned valueClassOf(int32_t value);
+// The bits that code it besides its class: sign and open low bits.
+[[nodiscard]] unsigned valueBits(int32_t value);
 
 }  // namespace meshfront
