@@ -21,10 +21,12 @@ class AsciiPlyBody {
   AsciiPlyBody(std::string_view file, size_t offset) : text_(file, offset) {}
 
   bool real(PlyScalar /*type*/, double& value) {
+    expected_ = "finite number";
     text_.skipSpace();
     return text_.real(value);
   }
   bool integer(PlyScalar /*type*/, int64_t& value) {
+    expected_ = "whole number";
     text_.skipSpace();
     return text_.integer(value);
   }
@@ -38,9 +40,10 @@ class AsciiPlyBody {
     return bytesEach == 0 || count <= (text_.left() + 1) / (2 * valuesEach);
   }
   [[nodiscard]] std::string place() const { return text_.place(); }
-  [[nodiscard]] std::string problem() const { return text_.problem(); }
+  [[nodiscard]] std::string problem() const { return text_.problem(expected_); }
 
  private:
+  const char* expected_ = "number";  // by the last call
   TextCursor text_;
 };
 
@@ -100,7 +103,8 @@ class BinaryPlyBody {
   }
   [[nodiscard]] std::string place() const { return "byte " + std::to_string(valueAt_); }
   [[nodiscard]] std::string problem() const {
-    return place() + (valueAt_ == at_ ? ": the file ends early" : ": not a finite number");
+    return place() +
+           (valueAt_ == at_ ? ": the file ends early" : ": not a number that can stand here");
   }
 
  private:

@@ -35,8 +35,9 @@ Result<std::array<uint64_t, 2>> readCounts(TextCursor& text) {
   std::array<uint64_t, 2> counts{};
   for (uint64_t& count : counts) {
     text.skipSpaceAndComments();
+    const TextCursor before = text;
     int64_t value = 0;
-    if (!text.integer(value) || value < 0) return fail(text.problem("count"));
+    if (!text.integer(value) || value < 0) return fail(before.problem("count"));
     count = static_cast<uint64_t>(value);
   }
   text.skipLine();  // the number of edges, which nobody needs
@@ -71,8 +72,9 @@ Result<IndexedMesh> readOff(std::string_view file) {
   std::vector<uint32_t> corners;
   for (uint64_t face = 0; face < (*counts)[1]; ++face) {
     text.skipSpaceAndComments();
+    const TextCursor before = text;
     int64_t length = 0;
-    if (!text.integer(length) || length < 0) return fail(text.problem("number of corners"));
+    if (!text.integer(length) || length < 0) return fail(before.problem("number of corners"));
     corners.clear();
     for (int64_t i = 0; i < length; ++i) {
       text.skipSpaceAndComments();

@@ -47,7 +47,7 @@ class PlyReader {
       bytesEach += byteLength(property.countType.value_or(property.type));
     if (!body_.canHold(element.count, bytesEach, element.properties.size()))
       return fail(body_.place() + ": the file ends early, it promises " +
-                  std::to_string(element.count) + " of element " + element.name);
+                  std::to_string(element.count) + " rows of element " + element.name);
     const bool vertices = element.name == "vertex";
     const bool strips = element.name == "tristrips";
     if (vertices) mesh_.positions.resize(element.count);
