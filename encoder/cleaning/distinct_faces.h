@@ -1,0 +1,15 @@
+// Step 1 and 2 of cleaning: which faces stay, on welded vertices.
+#pragma once
+
+#include <vector>
+
+#include "encoder/cleaning/close_mesh.h"
+
+namespace meshfront {
+
+// Drops degenerate and repeated faces (order kept) and moves opposite duplicates to copies of their
+// vertices, appended to `positions`. Afterwards no two faces share all three vertices.
+void keepDistinctFaces(std::vector<std::array<double, 3>>& positions,
+                       std::vector<Triangle>& triangles, CleaningReport& report);
+
+}  // namespace meshfront

@@ -1,0 +1,29 @@
+// The readers behind readMesh(), one a format. Input is untrusted; Errors name the line or byte,
+// not the file; a mesh without triangles is no Error here.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "shared/mesh/indexed_mesh.h"
+#include "shared/result.h"
+
+namespace meshfront {
+
+inline constexpr size_t kMaxFileVertices = INT32_MAX;
+
+[[nodiscard]] Result<IndexedMesh> readPly(std::string_view file);
+[[nodiscard]] Result<IndexedMesh> readObj(std::string_view file);
+[[nodiscard]] Result<IndexedMesh> readStl(std::string_view file);
+[[nodiscard]] Result<IndexedMesh> readOff(std::string_view file);
+
+// A binary STL file has no magic number; this is true if its size fits its triangle count.
+[[nodiscard]] bool looksLikeBinaryStl(std::string_view file);
+
+// What one says of an index that is too large, in every format.
+[[nodiscard]] inline std::string indexOutOfRange(long long index, size_t vertexCount) {
+  return "vertex index " + std::to_string(index) + " is out of range, there are " +
+         std::to_string(vertexCount) + " vertices";
+}
+
+}  // namespace meshfront

@@ -1,0 +1,275 @@
+#include "tests/data/nasty_meshes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <random>
+#include <set>
+
+#include "tests/data/mesh_shapes.h"
+
+namespace meshfront {
+namespace {
+
+IndexedMesh singleTriangle() {
+  return {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}};
+}
+
+IndexedMesh manyOf(const IndexedMesh& part, uint32_t columns, uint32_t rows, double distance) {
+  IndexedMesh mesh;
+  for (uint32_t y = 0; y < rows; ++y)
+    for (uint32_t x = 0; x < columns; ++x) appendMesh(mesh, part, {x * distance, y * distance, 0});
+  return mesh;
+}
+
+IndexedMesh tinyComponents() {  // 1,600 of them, of four kinds
+  IndexedMesh mesh;
+  const std::array<IndexedMesh, 4> kinds = {singleTriangle(), tetrahedron(), gridPatch(1, 1),
+                                            gridPatch(2, 2)};
+  for (uint32_t i = 0; i < 1600; ++i)
+    appendMesh(mesh, kinds[i % 4], {i % 40 * 3.0, static_cast<double>(i / 40) * 3.0, 0});
+  return mesh;
+}
+
+IndexedMesh ringOfSquares(uint32_t squares, bool twisted) {  // a cylinder or a Moebius strip
+  IndexedMesh mesh;
+  for (uint32_t i = 0; i < squares; ++i) {
+    const double a = 2 * std::numbers::pi * i / squares;
+    const double tilt = twisted ? a / 2 : 0;
+    for (const double side : {-0.4, 0.4}) {
+      const double radius = 2 + side * std::sin(tilt);
+      mesh.positions.push_back({radius * std::cos(a), radius * std::sin(a), side * std::cos(tilt)});
+    }
+  }
+  for (uint32_t i = 0; i < squares; ++i) {
+    const uint32_t low = 2 * i;
+    const bool seam = twisted && i + 1 == squares;
+    const uint32_t nextLow = (2 * i + 2) % (2 * squares) + (seam ? 1 : 0);
+    const uint32_t nextHigh = (2 * i + 2) % (2 * squares) + (seam ? 0 : 1);
+    mesh.triangles.push_back({low, nextLow, nextHigh});
+    mesh.triangles.push_back({low, nextHigh, low + 1});
+  }
+  return mesh;
+}
+
+IndexedMesh fan(uint32_t blades, bool closed) {
+  IndexedMesh mesh{{{0, 0, 0.5}}, {}};
+  for (uint32_t i = 0; i < blades; ++i) {
+    const double a = 2 * std::numbers::pi * i / blades;
+    mesh.positions.push_back({std::cos(a), std::sin(a), 0});
+  }
+  for (uint32_t i = 0; i + (closed ? 0 : 1) < blades; ++i)
+    mesh.triangles.push_back({0, i + 1, (i + 1) % blades + 1});
+  return mesh;
+}
+
+IndexedMesh doublePyramid(uint32_t sides) {  // two vertices of high degree that share their ring
+  IndexedMesh mesh = fan(sides, true);
+  const auto bottom = static_cast<uint32_t>(mesh.positions.size());
+  mesh.positions.push_back({0, 0, -0.5});
+  for (uint32_t i = 0; i < sides; ++i)
+    mesh.triangles.push_back({bottom, (i + 1) % sides + 1, i + 1});
+  return mesh;
+}
+
+IndexedMesh pagesOfABook(uint32_t pages) {  // one edge with that many faces
+  IndexedMesh mesh{{{0, 0, 0}, {0, 0, 1}}, {}};
+  for (uint32_t i = 0; i < pages; ++i) {
+    const double a = 2 * std::numbers::pi * i / pages;
+    mesh.positions.push_back({std::cos(a), std::sin(a), 0.5});
+    if (i % 2 == 0)
+      mesh.triangles.push_back({0, 1, i + 2});
+    else
+      mesh.triangles.push_back({1, 0, i + 2});
+  }
+  return mesh;
+}
+
+IndexedMesh twoSheetsAtAVertex() {
+  IndexedMesh mesh = gridPatch(3, 3);
+  const auto first = static_cast<uint32_t>(mesh.positions.size());
+  appendMesh(mesh, gridPatch(3, 3), {0, 0, 1});
+  for (Triangle& t : mesh.triangles)
+    for (uint32_t& corner : t)
+      if (corner == first + 5) corner = 5;
+  return mesh;
+}
+
+IndexedMesh backToBack(IndexedMesh mesh) {  // every face again, turned round
+  const size_t count = mesh.triangles.size();
+  for (size_t i = 0; i < count; ++i) {
+    const Triangle t = mesh.triangles[i];
+    mesh.triangles.push_back({t[0], t[2], t[1]});
+  }
+  return mesh;
+}
+
+IndexedMesh repeatedFaces() {
+  IndexedMesh mesh = gridPatch(2, 2);
+  const Triangle t = mesh.triangles[3];
+  mesh.triangles.insert(mesh.triangles.end(), {t, {t[1], t[2], t[0]}, {t[2], t[1], t[0]}, t});
+  return mesh;
+}
+
+IndexedMesh flippedNeighbour() {
+  IndexedMesh mesh = gridPatch(4, 4);
+  std::swap(mesh.triangles[13][0], mesh.triangles[13][1]);
+  return mesh;
+}
+
+IndexedMesh placed(IndexedMesh mesh, std::array<double, 3> (*place)(uint32_t vertex)) {
+  for (uint32_t i = 0; i < mesh.positions.size(); ++i) mesh.positions[i] = place(i);
+  return mesh;
+}
+
+IndexedMesh comb() {  // a long boundary: 60 teeth, every vertex on it
+  return gridPatchWithout(120, 12, [](uint32_t x, uint32_t y) { return y > 0 && x % 2 == 1; });
+}
+
+IndexedMesh sphereWithHoles(unsigned holes) {  // each where a vertex and its faces are gone
+  IndexedMesh mesh = sphere(4);
+  std::vector<std::set<uint32_t>> around(mesh.positions.size());
+  for (const Triangle& t : mesh.triangles)
+    for (const uint32_t a : t) around[a].insert(t.begin(), t.end());
+  std::set<uint32_t> gone;
+  std::set<uint32_t> taken;  // in or beside a hole
+  for (uint32_t v = 0; v < mesh.positions.size() && gone.size() < holes; v += 7) {
+    const auto isTaken = [&](uint32_t n) { return taken.contains(n); };
+    if (std::any_of(around[v].begin(), around[v].end(), isTaken)) continue;
+    gone.insert(v);
+    taken.insert(around[v].begin(), around[v].end());
+  }
+  std::erase_if(mesh.triangles, [&](const Triangle& t) {
+    return gone.contains(t[0]) || gone.contains(t[1]) || gone.contains(t[2]);
+  });
+  return mesh;
+}
+
+IndexedMesh threeHolesBlock() {  // genus 3, each cube cut into 2 x 2 x 2
+  return cubesSurface({14, 6, 2}, [](const std::array<int, 3>& c) {
+    return !(c[0] / 2 % 2 == 1 && c[1] / 2 == 1);
+  });
+}
+
+IndexedMesh cubesTouching(const std::array<int, 3>& second) {  // (0, 0, 0) and another one
+  return cubesSurface({2, 2, 2}, [&](const std::array<int, 3>& c) {
+    return c == std::array<int, 3>{} || c == second;
+  });
+}
+
+IndexedMesh checkeredCubes() {  // every cube touches others in edges and corners only
+  return cubesSurface({4, 4, 4},
+                      [](const std::array<int, 3>& c) { return (c[0] + c[1] + c[2]) % 2 == 0; });
+}
+
+IndexedMesh farApart() {  // quantised, each cluster is one grid point
+  IndexedMesh mesh = sphere(2);
+  appendMesh(mesh, torus(8, 6), {1e9, 1e9, 0});
+  appendMesh(mesh, gridPatch(5, 5), {-1e9, 1e9, 0});
+  return mesh;
+}
+
+IndexedMesh looseCorners(const IndexedMesh& mesh) {  // as STL: no two triangles share a vertex
+  IndexedMesh loose;
+  for (const Triangle& t : mesh.triangles) {
+    const auto first = static_cast<uint32_t>(loose.positions.size());
+    for (const uint32_t corner : t) loose.positions.push_back(mesh.positions[corner]);
+    loose.triangles.push_back({first, first + 1, first + 2});
+  }
+  return loose;
+}
+
+IndexedMesh withUnusedVertices() {
+  IndexedMesh mesh = gridPatchWithout(9, 9, [](uint32_t x, uint32_t y) { return x < 4 && y < 4; });
+  mesh.positions.push_back({4, 4, 9});
+  return mesh;
+}
+
+}  // namespace
+
+std::vector<NastyMesh> nastyMeshes() {
+  std::vector<NastyMesh> all;
+  const auto add = [&](const char* name, IndexedMesh mesh, bool vanishes = false) {
+    all.push_back({name, std::move(mesh), vanishes});
+  };
+  add("single-triangle", singleTriangle());
+  add("two-triangles-apart", manyOf(singleTriangle(), 2, 1, 3));
+  add("square", gridPatch(1, 1));
+  add("tetrahedron", tetrahedron());
+  add("1600-components", tinyComponents());
+  add("torus", torus(40, 20));
+  add("smallest-torus", torus(3, 3));
+  add("genus-3", threeHolesBlock());
+  add("sphere", sphere(4));
+  add("strip", gridPatch(300, 1));
+  add("cylinder", ringOfSquares(50, false));
+  add("moebius-strip", ringOfSquares(50, true));
+  add("smallest-moebius-strip", ringOfSquares(3, true));
+  add("open-fan", fan(200, false));
+  add("closed-fan", fan(200, true));
+  add("double-pyramid", doublePyramid(500));
+  add("edge-with-3-faces", pagesOfABook(3));
+  add("edge-with-4-faces", pagesOfABook(4));
+  add("edge-with-9-faces", pagesOfABook(9));
+  add("two-sheets-at-a-vertex", twoSheetsAtAVertex());
+  add("cubes-sharing-an-edge", cubesTouching({1, 1, 0}));
+  add("cubes-sharing-a-corner", cubesTouching({1, 1, 1}));
+  add("checkered-cubes", checkeredCubes());
+  add("pillow-of-two-triangles", backToBack(singleTriangle()));
+  add("sheet-back-to-back", backToBack(gridPatch(6, 6)));
+  add("sphere-back-to-back", backToBack(sphere(2)));
+  add("repeated-faces", repeatedFaces());
+  add("flipped-neighbour", flippedNeighbour());
+  add("on-a-line", placed(gridPatch(8, 8), [](uint32_t i) {
+        return std::array<double, 3>{double(i), 0, 0};
+      }));
+  add("in-a-plane", gridPatch(20, 20));
+  add("in-a-point",
+      placed(gridPatch(5, 5),
+             [](uint32_t) {
+               return std::array<double, 3>{1, 2, 3};
+             }),
+      true);
+  add("in-two-points",
+      placed(gridPatch(5, 5),
+             [](uint32_t i) {
+               return std::array<double, 3>{double(i % 2), 0, 0};
+             }),
+      true);
+  add("in-three-points", placed(gridPatch(5, 5), [](uint32_t i) {
+        return std::array<double, 3>{double((i + i / 6) % 3), double((i + i / 6) % 3 == 1 ? 1 : 0),
+                                     0};
+      }));
+  add("folded-onto-itself", placed(gridPatch(7, 7), [](uint32_t i) {
+        return std::array<double, 3>{double(i % 5), double(i / 8), 0};
+      }));
+  add("comb", comb());
+  add("plate-with-holes",
+      gridPatchWithout(30, 30, [](uint32_t x, uint32_t y) { return x % 3 == 1 && y % 3 == 1; }));
+  add("holes-touching-in-corners",
+      gridPatchWithout(12, 12, [](uint32_t x, uint32_t y) { return (x + y) % 2 == 0; }));
+  add("sphere-with-50-holes", sphereWithHoles(50));
+  add("far-apart", farApart());
+  add("loose-corners", looseCorners(torus(16, 8)));
+  add("unused-vertices", withUnusedVertices());
+  add("sparse-soup", randomSoup(1, 400, 300));
+  add("soup", randomSoup(2, 60, 300));
+  add("dense-soup", randomSoup(3, 12, 300));
+  return all;
+}
+
+IndexedMesh randomSoup(uint32_t seed, uint32_t vertexCount, uint32_t triangleCount) {
+  std::mt19937 random(seed);  // its sequence is fixed by the standard, unlike the distributions
+  IndexedMesh mesh;
+  for (uint32_t i = 0; i < vertexCount; ++i) {
+    auto& position = mesh.positions.emplace_back();
+    for (double& coordinate : position) coordinate = (random() >> 8) * 0x1p-24;
+  }
+  for (uint32_t i = 0; i < triangleCount; ++i) {
+    auto& triangle = mesh.triangles.emplace_back();
+    for (uint32_t& corner : triangle) corner = static_cast<uint32_t>(random() % vertexCount);
+  }
+  return mesh;
+}
+
+}  // namespace meshfront
