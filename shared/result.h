@@ -12,6 +12,7 @@ enum class ErrorCode {
   notFound,     // no such mesh, revision, node or file
   tooLarge,     // beyond a stated limit
   unavailable,  // the source (disk, upstream) failed: retrying may help
+  timedOut,     // the source did not answer in time
 };
 
 struct Error {

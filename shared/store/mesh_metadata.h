@@ -34,6 +34,7 @@ struct MeshMetadata {
 };
 
 [[nodiscard]] bool isMeshName(std::string_view name);
+[[nodiscard]] bool isRevision(std::string_view revision);
 [[nodiscard]] std::string toJson(const MeshMetadata& metadata);  // with links of the interface
 [[nodiscard]] Result<MeshMetadata> metadataFromJson(std::string_view json);  // untrusted
 
