@@ -1,0 +1,102 @@
+// meshfront-encode: a mesh file becomes a pack.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <csignal>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "encoder/pipeline/encode_mesh.h"
+#include "encoder/pipeline/progress_bar.h"
+
+namespace {
+
+using namespace meshfront;
+
+// While the pack is written an interrupt waits, so that none is left half written.
+class SignalsHeldBack {
+ public:
+  SignalsHeldBack() {
+    sigset_t set;
+    sigemptyset(&set);
+    sigaddset(&set, SIGINT);
+    sigaddset(&set, SIGTERM);
+    pthread_sigmask(SIG_BLOCK, &set, &before_);
+  }
+  ~SignalsHeldBack() { pthread_sigmask(SIG_SETMASK, &before_, nullptr); }
+  SignalsHeldBack(const SignalsHeldBack&) = delete;
+  SignalsHeldBack& operator=(const SignalsHeldBack&) = delete;
+
+ private:
+  sigset_t before_{};
+};
+
+Result<void> run(const std::string& input, const std::string& output, EncodeOptions options,
+                 bool json) {
+  if (options.name.empty()) options.name = std::filesystem::path(output).stem().string();
+  if (!isMeshName(options.name))
+    return fail("'" + options.name +
+                "' is no mesh name (letters, digits, '.', '_', '-', at most 64, no dot first); "
+                "choose one with --name");
+  ProgressBar bar;
+  auto encoded = encodeMesh(input, options,
+                            [&](const std::string& phase, double done) { bar.show(phase, done); });
+  if (!encoded) return tl::unexpected(encoded.error());
+  const SignalsHeldBack held;
+  const auto written = writePack(output, std::move(encoded->pack));
+  if (!written) return tl::unexpected(written.error());
+  if (json) {
+    auto out = nlohmann::ordered_json::parse(toJson(encoded->report, true));
+    out["metadata"] = nlohmann::ordered_json::parse(toJson(*written));
+    fmt::print("{}\n", out.dump(2));
+  } else {
+    fmt::print("{}wrote       {}: mesh {}, revision {}, base {} bytes, {} chunks, {} bytes\n",
+               describe(encoded->report), output, written->name, written->revision,
+               written->baseBytes, written->chunkCount, written->chunkBytes);
+  }
+  return {};
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app{"Encodes a triangle mesh (PLY, OBJ, STL, OFF) into a pack for meshfront-serve."};
+  std::string input;
+  std::string output;
+  bool json = false;
+  EncodeOptions options;
+  options.threads = std::max(1U, std::thread::hardware_concurrency());
+  app.add_option("INPUT", input, "Mesh file")->required();
+  app.add_option("--output", output, "Pack to write; replaced whole or not at all")->required();
+  app.add_option("--name", options.name, "Name in the catalogue (default: the pack's file name)");
+  app.add_option("--quantization", options.quantizationBits,
+                 "Bits a coordinate on the grid of the bounding cube")
+      ->check(CLI::Range(kMinQuantizationBits, kMaxQuantizationBits))
+      ->capture_default_str();
+  app.add_option("--base-fraction", options.baseFraction, "Base mesh as a share of the vertices")
+      ->check(CLI::Range(0.0, 1.0))
+      ->capture_default_str();
+  app.add_option("--balance", options.balance,
+                 "Exponent that keeps trees shallow: 0 (off), 1 or 2 (shallower)")
+      ->check(CLI::Range(0, 2))
+      ->capture_default_str();
+  app.add_option("--threads", options.threads, "Threads; the result does not depend on them")
+      ->check(CLI::Range(1, 256))
+      ->capture_default_str();
+  app.add_flag("--json", json, "Report as JSON");
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : 2;
+  }
+  try {
+    if (const auto done = run(input, output, options, json); !done) {
+      fmt::print(stderr, "meshfront-encode: {}\n", done.error().message);
+      return 1;
+    }
+  } catch (const std::bad_alloc&) {
+    fmt::print(stderr, "meshfront-encode: out of memory; the mesh needs a larger machine\n");
+    return 1;
+  }
+  return 0;
+}

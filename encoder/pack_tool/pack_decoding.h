@@ -1,0 +1,24 @@
+// A pack decoded the way a receiver decodes it: requests as bitstrings, answers parsed, records
+// applied to a selectively refined mesh.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "shared/refinement/selectively_refined_mesh.h"
+#include "shared/result.h"
+#include "shared/store/pack_store.h"
+
+namespace meshfront {
+
+[[nodiscard]] Result<SelectivelyRefinedMesh> baseOf(RecordStore& store);
+
+// Asks for the records of front nodes (any order; encoded and decoded as a request) and applies
+// them.
+[[nodiscard]] Result<void> refine(RecordStore& store, SelectivelyRefinedMesh& mesh,
+                                  std::span<const NodeIndex> nodes);
+
+// Everything.
+[[nodiscard]] Result<SelectivelyRefinedMesh> fullMesh(RecordStore& store);
+
+}  // namespace meshfront

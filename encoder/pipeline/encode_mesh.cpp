@@ -1,0 +1,125 @@
+#include "encoder/pipeline/encode_mesh.h"
+
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <chrono>
+
+#include "shared/codec/base_mesh.h"
+#include "shared/mesh_files/mesh_files.h"
+
+namespace meshfront {
+namespace {
+
+// Times phases and says when one begins.
+class PhaseClock {
+ public:
+  PhaseClock(std::vector<PhaseTime>& phases, const EncodeProgress& progress)
+      : phases_(phases), progress_(progress) {}
+  void begin(const std::string& name) {
+    end();
+    phases_.push_back({name, 0, 0});
+    started_ = std::chrono::steady_clock::now();
+    report(0);
+  }
+  void end() {
+    if (phases_.empty()) return;
+    const auto now = std::chrono::steady_clock::now();
+    phases_.back().seconds = std::chrono::duration<double>(now - started_).count();
+    rusage usage{};
+    getrusage(RUSAGE_SELF, &usage);
+    phases_.back().peakBytes = static_cast<uint64_t>(usage.ru_maxrss) * 1024;
+  }
+  void report(double done) const {
+    if (progress_) progress_(phases_.back().name, done);
+  }
+
+ private:
+  std::vector<PhaseTime>& phases_;
+  const EncodeProgress& progress_;
+  std::chrono::steady_clock::time_point started_;
+};
+
+std::vector<uint64_t> leavesByDepth(const VertexForest& forest, size_t realVertices) {
+  std::vector<uint64_t> counts(forest.maxDepth() + 1, 0);
+  for (uint32_t v = 0; v < realVertices; ++v) ++counts[forest.id(v).depth];
+  return counts;
+}
+
+}  // namespace
+
+Result<EncodedMesh> encodeMesh(const std::filesystem::path& input, const EncodeOptions& options,
+                               const EncodeProgress& progress) {
+  EncodedMesh out;
+  EncodingReport& report = out.report;
+  PhaseClock clock(report.phases, progress);
+
+  clock.begin("read");
+  auto mesh = readMesh(input);
+  if (!mesh) return tl::unexpected(mesh.error());
+
+  clock.begin("clean");
+  auto closed = closeMesh(*mesh, report.cleaning);
+  if (!closed) return fail(closed.error().code, input.string() + ": " + closed.error().message);
+  *mesh = {};
+  const Quantization quantization = quantizationFor(closed->positions, options.quantizationBits);
+  std::vector<GridPosition> positions;
+  positions.reserve(closed->positions.size());
+  MeshMetadata& metadata = out.pack.metadata;
+  metadata.boundsMin = metadata.boundsMax = closed->positions.front();
+  for (const auto& p : closed->positions) {
+    positions.push_back(quantization.toGrid(p));
+    for (size_t i = 0; i < 3; ++i) {
+      metadata.boundsMin[i] = std::min(metadata.boundsMin[i], p[i]);
+      metadata.boundsMax[i] = std::max(metadata.boundsMax[i], p[i]);
+    }
+  }
+  closed->positions = {};
+
+  clock.begin("simplify");
+  SimplifyOptions simplifyOptions;
+  simplifyOptions.baseFraction = options.baseFraction;
+  simplifyOptions.balance = options.balance;
+  const Simplification simplification =
+      simplify(positions, closed->virtualCount, closed->triangles, closed->realTriangleCount,
+               simplifyOptions, [&](size_t done, size_t planned) {
+                 clock.report(static_cast<double>(done) / static_cast<double>(planned));
+               });
+  report.simplification = simplification.report;
+  if (simplification.report.why == StopReason::notClosed)
+    return fail(input.string() + ": cleaning did not make it a closed manifold; please report it");
+
+  clock.begin("hierarchy");
+  const VertexForest forest(positions, closed->virtualCount, simplification.collapses);
+  report.maxDepth = forest.maxDepth();
+  report.leavesByDepth = leavesByDepth(forest, positions.size());
+
+  clock.begin("code");
+  const CodingInput codingInput{positions, closed->virtualCount, closed->triangles,
+                                options.quantizationBits};
+  CodedMesh coded =
+      codeMesh(codingInput, forest, options.threads, [&](uint64_t done, uint64_t planned) {
+        clock.report(static_cast<double>(done) / static_cast<double>(planned));
+      });
+  clock.end();
+  report.bits = coded.bits;
+  report.tableBits = coded.tableBits;
+
+  metadata.name = options.name;
+  metadata.vertexCount = positions.size();
+  metadata.triangleCount = closed->realTriangleCount;
+  metadata.baseVertexCount = forest.realRootCount();
+  metadata.baseTriangleCount = coded.baseTriangles;
+  metadata.splitCount = forest.splitCount();
+  metadata.maxLevel = forest.maxLevel();
+  metadata.maxDepth = forest.maxDepth();
+  metadata.quantization = quantization;
+  metadata.recordBytes = (coded.bits.total() + 7) / 8;
+  out.pack.base = std::move(coded.base);
+  out.pack.chunkIndex = std::move(coded.chunkIndex);
+  out.pack.chunks = std::move(coded.chunks);
+  out.pack.reportJson = toJson(report, false);
+  return out;
+}
+
+}  // namespace meshfront

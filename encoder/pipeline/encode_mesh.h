@@ -1,0 +1,60 @@
+// The whole way from a mesh file to the content of a pack.
+//
+//   file -> clean, close -> quantise -> simplify -> vertex forest -> code -> pack content + report
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "encoder/cleaning/close_mesh.h"
+#include "encoder/coding/mesh_coder.h"
+#include "encoder/simplification/simplify.h"
+#include "shared/result.h"
+#include "shared/store/pack.h"
+
+namespace meshfront {
+
+struct EncodeOptions {
+  std::string name;  // of the mesh in the catalogue; see isMeshName()
+  unsigned quantizationBits = kDefaultQuantizationBits;
+  double baseFraction = 0.002;
+  unsigned balance = 1;
+  unsigned threads = 2;  // changes the time, never the result
+};
+
+struct PhaseTime {
+  std::string name;
+  double seconds = 0;
+  uint64_t peakBytes = 0;  // of the process's memory, when the phase ended
+};
+
+struct EncodingReport {
+  CleaningReport cleaning;
+  SimplifyReport simplification;
+  FieldBits bits;
+  uint64_t tableBits = 0;
+  unsigned maxDepth = 0;
+  std::vector<uint64_t> leavesByDepth;
+  std::vector<PhaseTime> phases;
+};
+
+struct EncodedMesh {
+  PackContent pack;  // reportJson holds what of the report is a constant of the mesh
+  EncodingReport report;
+};
+
+// Phase's name and its share done, 0 .. 1.
+using EncodeProgress = std::function<void(const std::string& phase, double done)>;
+
+[[nodiscard]] Result<EncodedMesh> encodeMesh(const std::filesystem::path& input,
+                                             const EncodeOptions& options,
+                                             const EncodeProgress& progress = {});
+
+// The report as JSON: "cleaning", "simplification", "bits", "depths"; "phases" only if `withTimes`.
+[[nodiscard]] std::string toJson(const EncodingReport& report, bool withTimes);
+// For people, several lines.
+[[nodiscard]] std::string describe(const EncodingReport& report);
+
+}  // namespace meshfront

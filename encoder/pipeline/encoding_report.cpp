@@ -1,0 +1,118 @@
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "encoder/pipeline/encode_mesh.h"
+
+namespace meshfront {
+namespace {
+
+using nlohmann::ordered_json;
+
+const char* describe(StopReason why) {
+  switch (why) {
+    case StopReason::reachedBase:
+      return "the base is as small as asked for";
+    case StopReason::noValidCollapse:
+      return "no collapse is valid any more";
+    case StopReason::notClosed:
+      return "the mesh is not closed";
+  }
+  return "";
+}
+
+double each(double bits, uint64_t splits) {
+  return splits == 0 ? 0 : bits / static_cast<double>(splits);
+}
+
+}  // namespace
+
+std::string toJson(const EncodingReport& report, bool withTimes) {
+  const CleaningReport& c = report.cleaning;
+  const SimplifyReport& s = report.simplification;
+  const FieldBits& b = report.bits;
+  ordered_json json;
+  json["cleaning"] = {{"verticesIn", c.verticesIn},
+                      {"trianglesIn", c.trianglesIn},
+                      {"weldedVertices", c.weldedVertices},
+                      {"degenerateFaces", c.degenerateFaces},
+                      {"repeatedFaces", c.repeatedFaces},
+                      {"oppositeDuplicates", c.oppositeDuplicates},
+                      {"nonManifoldEdges", c.nonManifoldEdges},
+                      {"inconsistentEdges", c.inconsistentEdges},
+                      {"rejoinedEdges", c.rejoinedEdges},
+                      {"verticesSplit", c.verticesSplit},
+                      {"unreferencedVertices", c.unreferencedVertices},
+                      {"boundaryLoops", c.boundaryLoops},
+                      {"components", c.components}};
+  json["simplification"] = {
+      {"stopped", describe(s.why)},         {"wantedVertices", s.wantedVertices},
+      {"baseVertices", s.baseVertices},     {"refusedByLink", s.refusedByLink},
+      {"refusedByDepth", s.refusedByDepth}, {"refusedByValence", s.refusedByValence},
+      {"refusedVirtual", s.refusedVirtual}, {"postponedFlips", s.postponedFlips},
+      {"acceptedFlips", s.acceptedFlips}};
+  json["bits"] = {{"splits", b.splits},
+                  {"header", b.header},
+                  {"leafFlagsEntropy", b.leafFlags},
+                  {"significance", b.significance},
+                  {"positionClasses", b.positionClasses},
+                  {"positionValues", b.positionValues},
+                  {"cutCode", b.cutCode},
+                  {"cutPadding", b.cutPadding},
+                  {"total", b.total()},
+                  {"tables", report.tableBits}};
+  json["bitsPerSplit"] = {
+      {"cutCodeWithLength",
+       each(static_cast<double>(b.header + b.cutCode + b.cutPadding) - b.leafFlags, b.splits)},
+      {"leafFlags", each(b.leafFlags, b.splits)},
+      {"significance", each(static_cast<double>(b.significance), b.splits)},
+      {"position", each(static_cast<double>(b.positionClasses + b.positionValues), b.splits)},
+      {"total", each(static_cast<double>(b.total()), b.splits)}};
+  json["maxDepth"] = report.maxDepth;
+  json["leavesByDepth"] = report.leavesByDepth;
+  if (withTimes) {
+    for (const PhaseTime& phase : report.phases)
+      json["phases"].push_back({{"name", phase.name},
+                                {"seconds", phase.seconds},
+                                {"peakMiB", static_cast<double>(phase.peakBytes) / 1048576.0}});
+  }
+  return json.dump(2);
+}
+
+std::string describe(const EncodingReport& report) {
+  const CleaningReport& c = report.cleaning;
+  const SimplifyReport& s = report.simplification;
+  const FieldBits& b = report.bits;
+  std::string out =
+      fmt::format("read        {} vertices, {} triangles\n", c.verticesIn, c.trianglesIn);
+  const auto count = [&](uint64_t n, const char* what) {
+    if (n > 0) out += fmt::format("cleaned     {} {}\n", n, what);
+  };
+  count(c.weldedVertices, "vertices welded");
+  count(c.degenerateFaces, "degenerate faces dropped");
+  count(c.repeatedFaces, "repeated faces dropped");
+  count(c.oppositeDuplicates, "opposite duplicate faces given vertices of their own");
+  count(c.nonManifoldEdges, "non-manifold edges cut");
+  count(c.inconsistentEdges, "edges of inconsistent orientation cut");
+  count(c.rejoinedEdges, "cut edges joined again");
+  count(c.verticesSplit, "vertex copies made");
+  count(c.unreferencedVertices, "unreferenced vertices dropped");
+  count(c.boundaryLoops, "boundary loops closed with virtual vertices");
+  out += fmt::format("components  {}\n", c.components);
+  out += fmt::format("base        {} vertices (wanted {}): {}\n", s.baseVertices, s.wantedVertices,
+                     describe(s.why));
+  out += fmt::format("hierarchy   {} splits, deepest node {}\n", b.splits, report.maxDepth);
+  out += fmt::format(
+      "bits/split  cut code with length {:.2f}, leaf flags {:.2f}, significance {:.2f}, "
+      "position {:.2f}, total {:.2f}\n",
+      each(static_cast<double>(b.header + b.cutCode + b.cutPadding) - b.leafFlags, b.splits),
+      each(b.leafFlags, b.splits), each(static_cast<double>(b.significance), b.splits),
+      each(static_cast<double>(b.positionClasses + b.positionValues), b.splits),
+      each(static_cast<double>(b.total()), b.splits));
+  for (const PhaseTime& phase : report.phases)
+    out += fmt::format("time        {:<9} {:7.3f} s, peak {:.0f} MiB\n", phase.name, phase.seconds,
+                       static_cast<double>(phase.peakBytes) / 1048576.0);
+  return out;
+}
+
+}  // namespace meshfront
