@@ -123,7 +123,7 @@ class BinaryPlyBody {
                                   << (8 * (Order == std::endian::big ? sizeof bits - 1 - i : i)));
     }
     at_ += sizeof bits;
-    value = std::bit_cast<Stored>(bits);
+    value = std::bit_cast<Stored>(bits);  // NOLINT(bugprone-signed-char-misuse): a number
     return true;
   }
 

@@ -56,7 +56,7 @@ class PlyReader {
     for (uint64_t row = 0; row < element.count; ++row) {
       auto& position = vertices ? mesh_.positions[row] : ignored;
       for (size_t i = 0; i < roles->size(); ++i) {
-        const auto done = readProperty(element.properties[i], (*roles)[i], strips, position);
+        auto done = readProperty(element.properties[i], (*roles)[i], strips, position);
         if (!done) return done;
       }
     }

@@ -27,7 +27,7 @@ IndexedMesh tinyComponents() {  // 1,600 of them, of four kinds
   const std::array<IndexedMesh, 4> kinds = {singleTriangle(), tetrahedron(), gridPatch(1, 1),
                                             gridPatch(2, 2)};
   for (uint32_t i = 0; i < 1600; ++i)
-    appendMesh(mesh, kinds[i % 4], {i % 40 * 3.0, static_cast<double>(i / 40) * 3.0, 0});
+    appendMesh(mesh, kinds[i % 4], {i % 40 * 3.0, std::floor(i / 40.0) * 3, 0});
   return mesh;
 }
 
@@ -241,7 +241,7 @@ std::vector<NastyMesh> nastyMeshes() {
                                      0};
       }));
   add("folded-onto-itself", placed(gridPatch(7, 7), [](uint32_t i) {
-        return std::array<double, 3>{double(i % 5), double(i / 8), 0};
+        return std::array<double, 3>{double(i % 5), std::floor(i / 8.0), 0};
       }));
   add("comb", comb());
   add("plate-with-holes",

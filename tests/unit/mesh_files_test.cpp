@@ -338,11 +338,10 @@ TEST(Stl, NamesThePlaceOfWhatIsWrong) {
 }
 
 TEST(Off, ReadsAllKeywordsColumnsAndComments) {
-  const std::string counts = "4 2 0\n";
   const std::string vertices = "0 0 0\n1 0 0\n1 1 0\n0 1 .5\n";
-  const std::string faces = "3 0 1 2\n3 0 2 3\n";
-  for (const std::string keyword : {"OFF\n", "# hello\n\nOFF # there\n", "OFF ", ""})
-    expectMesh(keyword + counts + vertices + faces, MeshFormat::off, kSquare, kSquareFan);
+  const std::string rest = "4 2 0\n" + vertices + "3 0 1 2\n3 0 2 3\n";
+  for (const char* keyword : {"OFF\n", "# hello\n\nOFF # there\n", "OFF ", ""})
+    expectMesh(keyword + rest, MeshFormat::off, kSquare, kSquareFan);
   expectMesh("OFF 4 1\n# vertices\n" + vertices + "# a face\n4 0 1 2 3 # red\n", MeshFormat::off,
              kSquare, kSquareFan);
   expectMesh(
