@@ -39,7 +39,7 @@ Result<void> run(const std::string& input, const std::string& output, EncodeOpti
                 "' is no mesh name (letters, digits, '.', '_', '-', at most 64, no dot first); "
                 "choose one with --name");
   ProgressBar bar;
-  auto encoded = encodeMesh(input, options,
+  auto encoded = encodeFile(input, options,
                             [&](const std::string& phase, double done) { bar.show(phase, done); });
   if (!encoded) return tl::unexpected(encoded.error());
   const SignalsHeldBack held;

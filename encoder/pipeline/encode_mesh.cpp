@@ -48,20 +48,30 @@ std::vector<uint64_t> leavesByDepth(const VertexForest& forest, size_t realVerti
 
 }  // namespace
 
-Result<EncodedMesh> encodeMesh(const std::filesystem::path& input, const EncodeOptions& options,
+Result<EncodedMesh> encodeFile(const std::filesystem::path& input, const EncodeOptions& options,
+                               const EncodeProgress& progress) {
+  std::vector<PhaseTime> reading;
+  PhaseClock clock(reading, progress);
+  clock.begin("read");
+  auto mesh = readMesh(input);
+  if (!mesh) return tl::unexpected(mesh.error());
+  clock.end();
+  auto encoded = encodeMesh(std::move(*mesh), options, progress);
+  if (!encoded) return fail(encoded.error().code, input.string() + ": " + encoded.error().message);
+  encoded->report.phases.insert(encoded->report.phases.begin(), reading.front());
+  return encoded;
+}
+
+Result<EncodedMesh> encodeMesh(IndexedMesh mesh, const EncodeOptions& options,
                                const EncodeProgress& progress) {
   EncodedMesh out;
   EncodingReport& report = out.report;
   PhaseClock clock(report.phases, progress);
 
-  clock.begin("read");
-  auto mesh = readMesh(input);
-  if (!mesh) return tl::unexpected(mesh.error());
-
   clock.begin("clean");
-  auto closed = closeMesh(*mesh, report.cleaning);
-  if (!closed) return fail(closed.error().code, input.string() + ": " + closed.error().message);
-  *mesh = {};
+  auto closed = closeMesh(mesh, report.cleaning);
+  if (!closed) return tl::unexpected(closed.error());
+  mesh = {};
   const Quantization quantization = quantizationFor(closed->positions, options.quantizationBits);
   std::vector<GridPosition> positions;
   positions.reserve(closed->positions.size());
@@ -87,7 +97,7 @@ Result<EncodedMesh> encodeMesh(const std::filesystem::path& input, const EncodeO
                });
   report.simplification = simplification.report;
   if (simplification.report.why == StopReason::notClosed)
-    return fail(input.string() + ": cleaning did not make it a closed manifold; please report it");
+    return fail("cleaning did not make it a closed manifold; please report it");
 
   clock.begin("hierarchy");
   const VertexForest forest(positions, closed->virtualCount, simplification.collapses);

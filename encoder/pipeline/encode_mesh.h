@@ -48,8 +48,11 @@ struct EncodedMesh {
 // Phase's name and its share done, 0 .. 1.
 using EncodeProgress = std::function<void(const std::string& phase, double done)>;
 
-[[nodiscard]] Result<EncodedMesh> encodeMesh(const std::filesystem::path& input,
+[[nodiscard]] Result<EncodedMesh> encodeFile(const std::filesystem::path& input,
                                              const EncodeOptions& options,
+                                             const EncodeProgress& progress = {});
+// The same for a mesh at hand, which is used up.
+[[nodiscard]] Result<EncodedMesh> encodeMesh(IndexedMesh mesh, const EncodeOptions& options,
                                              const EncodeProgress& progress = {});
 
 // The report as JSON: "cleaning", "simplification", "bits", "depths"; "phases" only if `withTimes`.
