@@ -1,7 +1,6 @@
 #include "encoder/simplification/collapse_choice.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "shared/hierarchy/node_id.h"
 
@@ -9,12 +8,8 @@ namespace meshfront {
 
 namespace {
 
-float kKW = getenv("KW") ? atof(getenv("KW")) : 1;
-float kLengthWeight = getenv("LW") ? atof(getenv("LW")) : 1e-5F;
-volatile int sink = 0;
+constexpr float kLengthWeight = 1e-5F;
 constexpr float kNever = std::numeric_limits<float>::infinity();
-// A face has turned over if the cosine between its normals before and after is not above this.
-float kFlipCosine = getenv("FC") ? atof(getenv("FC")) : 0.0F;
 
 Offset difference(const Offset& a, const Offset& b) {
   return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
@@ -22,7 +17,9 @@ Offset difference(const Offset& a, const Offset& b) {
 Offset cross(const Offset& a, const Offset& b) {
   return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
-float dot(const Offset& a, const Offset& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+float dot(const Offset& a, const Offset& b) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
 
 }  // namespace
 
@@ -30,7 +27,7 @@ float CollapseChooser::cost(const SimplifyVertex& removed, const SimplifyVertex&
   const auto [dx, dy, dz] = difference(kept.position, removed.position);
   const float error = removed.quadric.at(dx, dy, dz);
   const float length2 = std::max(1.0F, dx * dx + dy * dy + dz * dz);
-  float result = std::max(0.0F, error) + kKW * kept.quadric.constant + kLengthWeight * length2 * length2;
+  float result = std::max(0.0F, error) + kLengthWeight * length2 * length2;
   const auto factor = static_cast<float>(1 + std::max(removed.height, kept.height));
   if (balance_ >= 1) result *= factor;
   if (balance_ >= 2) result *= factor;
@@ -73,7 +70,7 @@ void CollapseChooser::loadRing(uint32_t removed) {
   }
 }
 
-void CollapseChooser::findNormals(const SimplifyVertex&) {
+void CollapseChooser::findNormals() {
   for (uint32_t i = 0; i < size_; ++i) {
     const uint32_t next = i + 1 == size_ ? 0 : i + 1;
     const bool real = at_[i]->state != SimplifyVertex::State::immovable &&
@@ -125,48 +122,25 @@ bool CollapseChooser::turnsFaceOver(uint32_t at) const {
   for (uint32_t i = 0; i < size_; ++i) {
     if (i == at || i == before) continue;
     const uint32_t next = i + 1 == size_ ? 0 : i + 1;
-    const float old2 = dot(normals_[i], normals_[i]);
-    if (!(old2 > 0)) continue;  // virtual, or without area: nothing to turn
-    const Offset turned = cross(difference(offsets_[i], offsets_[at]),
-                                difference(offsets_[next], offsets_[at]));
-    const float cosine = dot(turned, normals_[i]);
-    const float bound = kFlipCosine * std::sqrt(old2 * dot(turned, turned));
-    if (!(cosine > bound)) return true;
+    // Virtual, or without area: nothing to turn.
+    if (!(dot(normals_[i], normals_[i]) > 0)) continue;
+    const Offset turned =
+        cross(difference(offsets_[i], offsets_[at]), difference(offsets_[next], offsets_[at]));
+    if (!(dot(turned, normals_[i]) > 0)) return true;  // by a right angle, or to nothing
   }
   return false;
 }
 
 void CollapseChooser::fetch(std::span<const CollapseQueue::Entry> entries) const {
-  static const int F = getenv("FETCH") ? atoi(getenv("FETCH")) : 2;
-  if (F < 1) return;
-  std::array<HalfEdge, 64> h;
-  for (size_t i = 0; i < entries.size(); ++i) h[i] = mesh_.outgoing(entries[i].vertex);
-  for (int step = 0; step < 7; ++step) {
+  constexpr int kUsualValence = 7;
+  std::array<HalfEdge, kFetchedTogether> at;
+  for (size_t i = 0; i < entries.size(); ++i) at[i] = mesh_.outgoing(entries[i].vertex);
+  for (int step = 0; step < kUsualValence; ++step) {
     for (size_t i = 0; i < entries.size(); ++i) {
-      __builtin_prefetch(&vertices_[mesh_.target(h[i])]);
-      h[i] = mesh_.turned(h[i]);
+      __builtin_prefetch(&vertices_[mesh_.target(at[i])]);
+      at[i] = mesh_.turned(at[i]);
     }
   }
-  if (F < 2) return;
-  for (size_t i = 0; i < entries.size(); ++i) {
-    float least = kNever;
-    const HalfEdge first = mesh_.outgoing(entries[i].vertex);
-    HalfEdge at = first;
-    for (int step = 0; step < 10; ++step) {
-      const float c = cost(vertices_[entries[i].vertex], vertices_[mesh_.target(at)]);
-      if (c < least) {
-        least = c;
-        h[i] = at;
-      }
-      at = mesh_.turned(at);
-      if (at == first) break;
-    }
-    h[i] = mesh_.opposite(h[i]);
-  }
-  for (int step = 0; step < 6; ++step) {
-    for (size_t i = 0; i < entries.size(); ++i) h[i] = mesh_.turned(h[i]);
-  }
-  for (size_t i = 0; i < entries.size(); ++i) sink += h[i].idx();
 }
 
 CollapseChoice CollapseChooser::choose(uint32_t removed) {
@@ -177,7 +151,7 @@ CollapseChoice CollapseChooser::choose(uint32_t removed) {
     return CollapseChoice();
   }
   loadRing(removed);
-  findNormals(vertex);
+  findNormals();
   CollapseChoice flipping;
   for (;;) {
     const auto least = std::min_element(costs_.begin(), costs_.begin() + size_);

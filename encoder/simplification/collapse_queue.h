@@ -35,10 +35,6 @@ class CollapseQueue {
     heap_.pop_back();
     if (!heap_.empty()) siftDown(0, last);
   }
-  // Gives the top entry another key. True if it is still the top. Only if not empty.
-  bool replaceTopKey(uint32_t key) {
-    return siftDown(0, packed({key, top().vertex})) == 0;
-  }
   void push(Entry entry) {
     const uint64_t value = packed(entry);
     size_t at = heap_.size();
@@ -55,8 +51,8 @@ class CollapseQueue {
  private:
   static constexpr size_t kArity = 4;
   static uint64_t packed(Entry entry) { return uint64_t{entry.key} << 32 | entry.vertex; }
-  // Puts `value` into the hole at `at` or below it; returns where.
-  size_t siftDown(size_t at, uint64_t value) {
+  // Puts `value` into the hole at `at` or below it.
+  void siftDown(size_t at, uint64_t value) {
     const size_t size = heap_.size();
     for (;;) {
       const size_t first = at * kArity + 1;
@@ -71,7 +67,6 @@ class CollapseQueue {
       at = smallest;
     }
     heap_[at] = value;
-    return at;
   }
 
   std::vector<uint64_t> heap_;

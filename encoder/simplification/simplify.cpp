@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "encoder/simplification/closed_mesh.h"
+#include "encoder/simplification/collapsible_mesh.h"
 #include "encoder/simplification/collapse_choice.h"
 #include "encoder/simplification/collapse_queue.h"
 #include "encoder/simplification/space_filling_order.h"
@@ -20,8 +20,7 @@ using Vector = std::array<double, 3>;
 constexpr uint32_t kFewestVertices = 4;
 constexpr size_t kProgressInterval = 16384;
 // A boundary edge counts as this many faces as large as the square on it.
-double kBoundaryWeight = getenv("BW") ? atof(getenv("BW")) : 1.0;
-static int gNotify = getenv("NOTIFY") ? atoi(getenv("NOTIFY")) : 1;
+constexpr double kBoundaryWeight = 1;
 
 Vector edgeVector(const Offset& from, const Offset& to) {
   return {double{to[0]} - from[0], double{to[1]} - from[1], double{to[2]} - from[2]};
@@ -43,10 +42,9 @@ class Simplifier {
   Simplifier(std::span<const GridPosition> positions, uint32_t virtualCount,
              const SimplifyOptions& options)
       : realCount_(static_cast<uint32_t>(positions.size())),
-        inputIndex_(getenv("NOMORTON")?std::vector<uint32_t>():spaceFillingOrder(positions)),
+        inputIndex_(spaceFillingOrder(positions)),
         vertices_(positions.size() + virtualCount),
         chooser_(mesh_, vertices_, options.balance, result_.report) {
-    if (inputIndex_.empty()) { inputIndex_.resize(realCount_); std::iota(inputIndex_.begin(), inputIndex_.end(), 0u); }
     for (uint32_t v = 0; v < realCount_; ++v) {
       for (size_t i = 0; i < 3; ++i) {
         vertices_[v].position[i] = static_cast<float>(positions[inputIndex_[v]][i]);
@@ -55,7 +53,8 @@ class Simplifier {
     for (uint32_t v = realCount_; v < vertices_.size(); ++v) {
       vertices_[v].state = State::immovable;
     }
-    const double wanted = std::ceil(std::clamp(options.baseFraction, 0.0, 1.0) * realCount_);
+    const double share = options.baseFraction > 0 ? std::min(options.baseFraction, 1.0) : 0;
+    const double wanted = std::ceil(share * realCount_);
     result_.report.wantedVertices = std::max(kFewestVertices, static_cast<uint32_t>(wanted));
   }
 
@@ -69,10 +68,10 @@ class Simplifier {
         result_.report.why = StopReason::notClosed;
         return std::move(result_);
       }
-      addFaceQuadrics(triangles.first(realTriangleCount), newIndex);
+      addFaceQuadrics(triangles.first(std::min(realTriangleCount, triangles.size())), newIndex);
     }
     addBoundaryQuadrics();
-    const auto tt = std::chrono::steady_clock::now(); fillQueue(); if (getenv("EV")) fprintf(stderr, "fill %f\n", std::chrono::duration<double>(std::chrono::steady_clock::now() - tt).count());
+    fillQueue();
     collapseAll(progress);
     return std::move(result_);
   }
@@ -105,8 +104,8 @@ class Simplifier {
   }
   void addBoundaryEdge(uint32_t a, uint32_t b, uint32_t inside) {
     const Vector edge = edgeVector(vertices_[a].position, vertices_[b].position);
-    Vector plane = cross(edge, cross(edge, edgeVector(vertices_[a].position,
-                                                      vertices_[inside].position)));
+    Vector plane =
+        cross(edge, cross(edge, edgeVector(vertices_[a].position, vertices_[inside].position)));
     if (!(normalize(plane) > 0)) return;
     const double weight =
         kBoundaryWeight * (edge[0] * edge[0] + edge[1] * edge[1] + edge[2] * edge[2]);
@@ -139,42 +138,50 @@ class Simplifier {
     const size_t planned =
         realCount_ > report.wantedVertices ? realCount_ - report.wantedVertices : 0;
     result_.collapses.reserve(planned);
-    static const size_t kB = getenv("BATCH") ? atoi(getenv("BATCH")) : 8;
-    std::array<CollapseQueue::Entry, 64> batch;
+    std::array<CollapseQueue::Entry, kFetchedTogether> batch{};
     while (result_.collapses.size() < planned && !queue_.empty()) {
-      size_t n = 0;
-      while (n < kB && !queue_.empty()) {
-        const auto e = queue_.top();
+      size_t size = 0;
+      while (size < batch.size() && !queue_.empty()) {
+        const CollapseQueue::Entry entry = queue_.top();
         queue_.pop();
-        const auto& vertex = vertices_[e.vertex];
-        if (vertex.state == State::waiting && vertex.key == e.key) batch[n++] = e;
+        if (isCurrent(entry)) batch[size++] = entry;
       }
-      chooser_.fetch({batch.data(), n});
-      for (size_t i = 0; i < n && result_.collapses.size() < planned; ++i) {
-        const auto [key, vertex] = batch[i];
-        SimplifyVertex& removed = vertices_[vertex];
-        if (removed.state != State::waiting || removed.key != key) continue;
-        ++evals_;
-        const CollapseChoice choice = chooser_.choose(vertex);
-        if (!choice.halfEdge.is_valid()) {
-          removed.state = State::parked;
-          continue;
-        }
-        if (choice.key > key && choice.key > (i + 1 < n ? batch[i + 1].key : queue_.empty() ? ~0u : queue_.top().key)) {
-          removed.key = choice.key;
-          queue_.push({choice.key, vertex});
-          continue;
-        }
-        collapse(vertex, choice);
+      chooser_.fetch({batch.data(), size});
+      for (size_t i = 0; i < size && result_.collapses.size() < planned; ++i) {
+        if (!isCurrent(batch[i])) continue;
+        const uint32_t nextKey = i + 1 < size ? batch[i + 1].key : batch[i].key;
+        if (!collapseOrPutBack(batch[i], nextKey)) continue;
         if (progress && result_.collapses.size() % kProgressInterval == 0) {
           progress(result_.collapses.size(), planned);
         }
       }
     }
-    report.why = result_.collapses.size() < planned ? StopReason::noValidCollapse
-                                                    : StopReason::reachedBase;
+    report.why =
+        result_.collapses.size() < planned ? StopReason::noValidCollapse : StopReason::reachedBase;
     report.baseVertices = realCount_ - static_cast<uint32_t>(result_.collapses.size());
-    if (getenv("EV")) fprintf(stderr, "evals %zu notified %zu collapses %zu\n", evals_, notified_, result_.collapses.size());
+  }
+
+  // False for an entry that a smaller one has replaced, or whose vertex has gone.
+  [[nodiscard]] bool isCurrent(const CollapseQueue::Entry& entry) const {
+    const SimplifyVertex& vertex = vertices_[entry.vertex];
+    return vertex.state == State::waiting && vertex.key == entry.key;
+  }
+
+  // Collapses the vertex unless it has become dearer than both its entry and the next one.
+  bool collapseOrPutBack(const CollapseQueue::Entry& entry, uint32_t nextKey) {
+    SimplifyVertex& vertex = vertices_[entry.vertex];
+    const CollapseChoice choice = chooser_.choose(entry.vertex);
+    if (!choice.halfEdge.is_valid()) {
+      vertex.state = State::parked;
+      return false;
+    }
+    if (choice.key > std::max(entry.key, nextKey)) {
+      vertex.key = choice.key;
+      queue_.push({choice.key, entry.vertex});
+      return false;
+    }
+    collapse(entry.vertex, choice);
+    return true;
   }
 
   void collapse(uint32_t from, const CollapseChoice& choice) {
@@ -201,7 +208,7 @@ class Simplifier {
   // is found out when they come up.
   void reconsider(uint32_t v, const SimplifyVertex& kept) {
     SimplifyVertex& vertex = vertices_[v];
-    if (vertex.state == State::immovable || vertex.valence > kMaxRemovedValence || !gNotify) return;
+    if (vertex.state == State::immovable || vertex.valence > kMaxRemovedValence) return;
     uint32_t key = 0;
     if (vertex.state == State::parked || (vertex.key & kFlipBit) != 0) {
       key = chooser_.lowerBound(v);
@@ -211,17 +218,15 @@ class Simplifier {
       return;
     }
     if (vertex.state == State::waiting && key >= vertex.key) return;
-    ++notified_;
     vertex.state = State::waiting;
     vertex.key = key;
     queue_.push({key, v});
   }
 
   uint32_t realCount_;
-  size_t evals_ = 0, notified_ = 0;
   std::vector<uint32_t> inputIndex_;  // of the real vertices, which are renumbered
   std::vector<SimplifyVertex> vertices_;
-  ClosedMesh mesh_;
+  CollapsibleMesh mesh_;
   Simplification result_;
   CollapseChooser chooser_;
   CollapseQueue queue_;
@@ -233,8 +238,8 @@ Simplification simplify(std::span<const GridPosition> positions, uint32_t virtua
                         std::span<const Triangle> triangles, size_t realTriangleCount,
                         const SimplifyOptions& options, const SimplifyProgress& progress) {
   const auto start = std::chrono::steady_clock::now();
-  Simplification result = Simplifier(positions, virtualCount, options)
-                              .run(triangles, realTriangleCount, progress);
+  Simplification result =
+      Simplifier(positions, virtualCount, options).run(triangles, realTriangleCount, progress);
   result.report.seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return result;

@@ -1,6 +1,6 @@
 // The quadric error of a vertex, kept relative to that vertex's own position. So the error at the
-// vertex is the constant term alone, a fresh vertex has nothing but the matrix, and single precision
-// is enough: offsets are edge lengths, never coordinates.
+// vertex is the constant term alone, a fresh vertex has nothing but the matrix, and single
+// precision is enough: offsets are edge lengths, never coordinates.
 #pragma once
 
 #include <array>
