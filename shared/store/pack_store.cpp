@@ -88,7 +88,7 @@ class PackStore::Collector {
   uint64_t records_ = 0;
 };
 
-PackStore::PackStore(std::shared_ptr<const Pack> pack, std::shared_ptr<IndexBudget> budget)
+PackStore::PackStore(std::shared_ptr<const Pack> pack, std::shared_ptr<MemoryBudget> budget)
     : pack_(std::move(pack)), budget_(std::move(budget)), chunks_(pack_->metadata().chunkCount) {
   budget_->join(this);
 }
@@ -202,7 +202,7 @@ Result<RecordPlace> PackStore::indexChunkOf(const NodeId& node, unsigned level,
   return found;
 }
 
-void PackStore::evictIndex(size_t bytes) {
+void PackStore::release(size_t bytes) {
   const std::unique_lock lock(mutex_);
   const size_t before = table_.bytes();
   const size_t goal = before > bytes ? before - bytes : 0;

@@ -17,17 +17,17 @@
 
 #include "shared/codec/base_mesh.h"
 #include "shared/codec/chunk.h"
-#include "shared/store/index_budget.h"
+#include "shared/store/memory_budget.h"
 #include "shared/store/pack.h"
 #include "shared/store/record_store.h"
 #include "shared/store/record_table.h"
 
 namespace meshfront {
 
-class PackStore final : public RecordStore, private IndexBudget::Member {
+class PackStore final : public RecordStore, private MemoryBudget::Member {
  public:
   // Reads nothing but what opening the pack has read.
-  PackStore(std::shared_ptr<const Pack> pack, std::shared_ptr<IndexBudget> budget);
+  PackStore(std::shared_ptr<const Pack> pack, std::shared_ptr<MemoryBudget> budget);
   ~PackStore() override;
 
   [[nodiscard]] const MeshMetadata& metadata() const { return pack_->metadata(); }
@@ -59,11 +59,11 @@ class PackStore final : public RecordStore, private IndexBudget::Member {
   [[nodiscard]] Result<RecordPlace> indexChunkOf(const NodeId& node, unsigned level,
                                                  const Directory& directory);
 
-  [[nodiscard]] size_t indexBytes() const override { return indexBytes_.load(); }
-  void evictIndex(size_t bytes) override;
+  [[nodiscard]] size_t heldBytes() const override { return indexBytes_.load(); }
+  void release(size_t bytes) override;
 
   const std::shared_ptr<const Pack> pack_;
-  const std::shared_ptr<IndexBudget> budget_;
+  const std::shared_ptr<MemoryBudget> budget_;
   std::once_flag directoryRead_;
   Result<Directory> directory_ = Directory{};
 

@@ -1,7 +1,8 @@
-// The memory that the chunk indexes of all packs may take together.
+// Memory that several holders may take together: the indexes of all packs of a service, the records
+// and documents of a proxy.
 //
 // Locking: enforce() takes the budget's lock, then a member's. A member therefore never calls it
-// while it holds its own lock.
+// while it holds a lock of its own.
 #pragma once
 
 #include <cstddef>
@@ -10,7 +11,7 @@
 
 namespace meshfront {
 
-class IndexBudget {
+class MemoryBudget {
  public:
   class Member {
    public:
@@ -18,21 +19,22 @@ class IndexBudget {
     virtual ~Member() = default;
     Member(const Member&) = delete;
     Member& operator=(const Member&) = delete;
-    [[nodiscard]] virtual size_t indexBytes() const = 0;
-    // Gives up at least `bytes` if it has them.
-    virtual void evictIndex(size_t bytes) = 0;
+    [[nodiscard]] virtual size_t heldBytes() const = 0;
+    // Gives up about `bytes`, or all it has.
+    virtual void release(size_t bytes) = 0;
   };
 
-  explicit IndexBudget(size_t limit) : limit_(limit) {}
+  explicit MemoryBudget(size_t limit) : limit_(limit) {}
 
   // A member joins and leaves itself; it must have left before it is destroyed.
   void join(Member* member);
   void leave(Member* member);
 
-  // Lets the largest members evict until all fit. Between the growth of a member and this call the
-  // limit is exceeded by the index of a chunk for each thread.
+  // Lets the largest members give up memory until all fit. Called after growth, so that the limit
+  // is exceeded in between by what each thread has just added.
   void enforce();
   [[nodiscard]] size_t bytes() const;
+  [[nodiscard]] size_t limit() const { return limit_; }
 
  private:
   [[nodiscard]] size_t bytesLocked() const;

@@ -1,0 +1,107 @@
+#include "proxy/record_cache.h"
+
+#include <bit>
+
+#include "shared/bits/bit_reader.h"
+
+namespace meshfront {
+namespace {
+
+size_t byteCount(uint32_t bits) {
+  return (bits + 7) / 8;
+}
+
+}  // namespace
+
+RecordCache::RecordCache(MemoryBudget& budget) : budget_(budget) {
+  budget_.join(this);
+}
+
+RecordCache::~RecordCache() {
+  budget_.leave(this);
+  for (Shard& shard : shards_)
+    for (size_t i = 0; i < shard.table.places(); ++i)
+      if (shard.table.place(i).path != 0) release(shard, shard.table.place(i).value);
+}
+
+uint8_t* RecordCache::outsideBytes(const CachedRecord& record) {
+  return std::bit_cast<uint8_t*>(record.bits);
+}
+
+void RecordCache::release(Shard& shard, const CachedRecord& record) {
+  if (record.isInline()) return;
+  delete[] outsideBytes(record);
+  shard.outside -= byteCount(record.length());
+}
+
+void RecordCache::insert(const RecordEntry& entry, std::span<const uint8_t> source) {
+  if (entry.bitLength > kMaxLength) return;
+  CachedRecord record;
+  record.packed = entry.bitLength << 18 | (entry.leftIsLeaf ? 1U : 0U) << 17 |
+                  (entry.rightIsLeaf ? 1U : 0U) << 16 | (entry.leftLevel & 31U) << 11 |
+                  (entry.rightLevel & 31U) << 6;
+  BitReader in(source, entry.bitOffset, entry.bitOffset + entry.bitLength);
+  Shard& shard = shardOf(entry.id.tree);
+  const std::unique_lock lock(shard.mutex);
+  if (shard.table.find(entry.id) != nullptr) return;
+  const size_t before = shard.bytes();
+  if (record.isInline()) {
+    const uint64_t high = in.peek(32) << 32;
+    in.skip(entry.bitLength < 32 ? entry.bitLength : 32);
+    const uint64_t low = in.peek(32);
+    record.bits = {static_cast<uint32_t>(high >> 32), static_cast<uint32_t>(low)};
+  } else {
+    const size_t count = byteCount(entry.bitLength);
+    auto* bytes = new uint8_t[count];
+    for (size_t i = 0; i < count; ++i) {
+      bytes[i] = static_cast<uint8_t>(in.peek(8));
+      in.skip(in.left() < 8 ? in.left() : 8);
+    }
+    record.bits = std::bit_cast<std::array<uint32_t, 2>>(bytes);
+    shard.outside += count;
+  }
+  shard.table.insert(entry.id, record);
+  bytes_ += shard.bytes() - before;
+}
+
+std::optional<ChildFacts> RecordCache::Reader::find(const NodeId& node, BitWriter* out) {
+  Shard& shard = cache_.shardOf(node.tree);
+  if (&shard != shard_) {
+    if (lock_.owns_lock()) lock_.unlock();
+    shard_ = &shard;
+    lock_ = std::shared_lock(shard.mutex);
+  }
+  CachedRecord* record = shard.table.find(node);
+  if (record == nullptr) return std::nullopt;
+  if (!record->wasUsed())  // readers share the lock: the mark is set atomically
+    std::atomic_ref<uint32_t>(record->packed).fetch_or(1, std::memory_order_relaxed);
+  if (out != nullptr) {
+    const uint32_t length = record->length();
+    if (record->isInline()) {
+      if (length > 32) {
+        out->write(record->bits[0], 32);
+        out->write(record->bits[1] >> (64 - length), length - 32);
+      } else if (length > 0) {
+        out->write(record->bits[0] >> (32 - length), length);
+      }
+    } else {
+      out->append({outsideBytes(*record), byteCount(length)}, 0, length);
+    }
+  }
+  return record->children();
+}
+
+void RecordCache::release(size_t bytes) {
+  const size_t share = bytes / kShards + 1;
+  for (Shard& shard : shards_) {
+    const std::unique_lock lock(shard.mutex);
+    const size_t before = shard.bytes();
+    const size_t goal = before > share ? before - share : 0;
+    shard.eviction.evict(
+        shard.table, [&] { return shard.bytes() <= goal; },
+        [&](const CachedRecord& record) { release(shard, record); });
+    bytes_ -= before - shard.bytes();
+  }
+}
+
+}  // namespace meshfront

@@ -1,0 +1,186 @@
+#include "proxy/record_gathering.h"
+
+#include <algorithm>
+
+#include "shared/bits/crc32c.h"
+
+namespace meshfront {
+namespace {
+
+constexpr unsigned kMaxRounds = 4 * kMaxDepth;  // more of them only if the cache forgets at once
+constexpr size_t kMaxBatch = 32768;             // nodes; any set of them fits into a QUERY
+
+tl::unexpected<Error> noSuchNode() {
+  return fail(ErrorCode::notFound, "no such node, or a leaf, which has no record");
+}
+
+bool sameExpansion(const Expansion& a, const Expansion& b) {
+  return a.levels == b.levels && a.significance == b.significance;
+}
+
+bool isAway(const Error& error) {
+  return error.code == ErrorCode::unavailable || error.code == ErrorCode::timedOut;
+}
+
+}  // namespace
+
+Result<Answer> RecordGathering::collect(std::span<const NodeId> wanted,
+                                        const Expansion& expansion) {
+  for (unsigned round = 0; round < kMaxRounds; ++round) {
+    Needs needs;
+    if (auto walked = walk(wanted, expansion, needs); !walked)
+      return tl::unexpected(walked.error());
+    if (needs.empty()) {
+      context_.counters.recordHits.add(records_ - missed_);
+      context_.counters.recordMisses.add(missed_);
+      Answer answer{out_.take(), records_};
+      appendChecksum(answer.bytes);
+      return answer;
+    }
+    const auto obtained = obtain(needs);
+    context_.budget.enforce();
+    if (!obtained) return tl::unexpected(obtained.error());
+  }
+  return fail(ErrorCode::unavailable, "the cache is too small for this request");
+}
+
+std::optional<ChildFacts> RecordGathering::find(const NodeId& node, Reader& reader,
+                                                BitWriter* out) {
+  const auto it = held_.find(node);
+  if (it == held_.end()) return reader.find(node, out);
+  const Held& held = it->second;
+  if (out != nullptr) {
+    out->append(held.records->bytes, held.bitOffset, held.bitLength);
+    ++missed_;
+  }
+  return held.children;
+}
+
+Result<void> RecordGathering::walk(std::span<const NodeId> wanted, const Expansion& expansion,
+                                   Needs& needs) {
+  out_.clear();
+  records_ = missed_ = 0;
+  Reader reader(context_.cache);
+  Result<void> status;
+  walkRequest(
+      wanted, expansion,
+      [&](const NodeId& node, const Expansion& rest) -> std::optional<ChildFacts> {
+        const auto facts = find(node, reader, &out_);
+        if (!facts) {
+          status = note(node, rest, reader, needs);
+        } else if (++records_ > limits_.maxRecords || out_.bitCount() / 8 > limits_.maxBytes) {
+          status = fail(ErrorCode::tooLarge, "the answer would be too large; ask for fewer nodes");
+        }
+        return facts;
+      },
+      [&] { return !status; });
+  return status;
+}
+
+Result<void> RecordGathering::note(const NodeId& node, const Expansion& rest, Reader& reader,
+                                   Needs& needs) {
+  NodeId top = node;
+  while (true) {
+    Need need{top == node ? rest : Expansion{}, 0};
+    if (top.depth == 0) {
+      if (top.tree >= context_.roots.size() || context_.roots[top.tree].isLeaf) return noSuchNode();
+      need.level = context_.roots[top.tree].level;
+    } else {
+      const auto above = find(top.parent(), reader, nullptr);
+      if (!above) {
+        top = top.parent();
+        continue;
+      }
+      const bool right = top.step(top.depth - 1U);
+      if (above->isLeaf(right)) return noSuchNode();
+      need.level = above->level(right);
+    }
+    needs.emplace(top, need);
+    return {};
+  }
+}
+
+Result<void> RecordGathering::obtain(const Needs& needs) {
+  std::set<FetchesUnderWay::Fetch> others;
+  std::vector<Batch> batches = claim(needs, others);
+  Result<void> status;
+  for (Batch& batch : batches) {
+    // After a failure the rest is settled too: others may be waiting for it.
+    Result<SharedRecords> records =
+        status ? fetch(batch, needs) : Result<SharedRecords>(tl::unexpected(status.error()));
+    if (records) {
+      hold(*records);
+    } else if (status) {
+      status = tl::unexpected(records.error());
+    }
+    settle(batch, records);
+  }
+  if (!status) return status;
+  context_.counters.sharedFetches.add(others.size());
+  for (const auto& other : others) {
+    const Result<SharedRecords>& records = other->get();
+    if (records) hold(*records);
+    // Another error may concern the other request alone: the next round asks for itself.
+    if (!records && isAway(records.error())) return tl::unexpected(records.error());
+  }
+  return {};
+}
+
+std::vector<RecordGathering::Batch> RecordGathering::claim(
+    const Needs& needs, std::set<FetchesUnderWay::Fetch>& others) {
+  std::vector<Batch> batches;
+  const auto batchFor = [&](const NodeId& node, const Expansion& rest) -> Batch& {
+    for (Batch& batch : batches)
+      if (sameExpansion(batch.expansion, rest) && batch.nodes.size() < kMaxBatch &&
+          !batch.nodes.back().isAncestorOf(node))
+        return batch;
+    return batches.emplace_back(Batch{rest, {}, {}});
+  };
+  const std::scoped_lock lock(context_.underWay.mutex);
+  Reader reader(context_.cache);
+  for (const auto& [node, need] : needs) {
+    const auto it = context_.underWay.nodes.find(node);
+    if (it != context_.underWay.nodes.end()) {
+      others.insert(it->second);
+    } else if (!reader.find(node, nullptr)) {  // else it has arrived since the walk
+      batchFor(node, need.rest).nodes.push_back(node);
+    }
+  }
+  for (Batch& batch : batches) {
+    const auto fetch = std::make_shared<const std::shared_future<Result<SharedRecords>>>(
+        batch.promise.get_future().share());
+    for (const NodeId& node : batch.nodes) context_.underWay.nodes.emplace(node, fetch);
+  }
+  return batches;
+}
+
+Result<SharedRecords> RecordGathering::fetch(const Batch& batch, const Needs& needs) {
+  return context_.fetcher.fetch(batch.nodes, batch.expansion, context_.tables,
+                                [&](const NodeId& node) -> std::optional<unsigned> {
+                                  const auto it = needs.find(node);
+                                  if (it == needs.end()) return std::nullopt;
+                                  return it->second.level;
+                                });
+}
+
+void RecordGathering::settle(Batch& batch, const Result<SharedRecords>& records) {
+  if (records)
+    for (const RecordEntry& entry : (*records)->entries)
+      context_.cache.insert(entry, (*records)->bytes);
+  {
+    const std::scoped_lock lock(context_.underWay.mutex);
+    for (const NodeId& node : batch.nodes) context_.underWay.nodes.erase(node);
+  }
+  batch.promise.set_value(records);
+}
+
+void RecordGathering::hold(const SharedRecords& records) {
+  for (const RecordEntry& entry : records->entries)
+    held_.try_emplace(entry.id,
+                      Held{{entry.leftIsLeaf, entry.rightIsLeaf, entry.leftLevel, entry.rightLevel},
+                           records,
+                           entry.bitOffset,
+                           entry.bitLength});
+}
+
+}  // namespace meshfront

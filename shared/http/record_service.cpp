@@ -1,0 +1,266 @@
+#include "shared/http/record_service.h"
+
+#include <openssl/evp.h>
+
+#include <algorithm>
+#include <cstdio>
+
+#include "shared/bits/base64url.h"
+#include "shared/http/conditional_request.h"
+#include "shared/http/problem.h"
+#include "shared/http/split_request.h"
+
+namespace meshfront {
+namespace {
+
+constexpr const char* kImmutable = "public, max-age=31536000, immutable, no-transform";
+constexpr const char* kShort = "public, max-age=10";
+constexpr const char* kBinary = "application/octet-stream";
+
+std::string hexOf(std::span<const uint8_t> bytes) {
+  constexpr std::string_view kDigits = "0123456789abcdef";
+  std::string text;
+  text.reserve(bytes.size() * 2);
+  for (const uint8_t byte : bytes) {
+    text.push_back(kDigits[byte >> 4]);
+    text.push_back(kDigits[byte & 15]);
+  }
+  return text;
+}
+
+std::string quoted(std::string_view text) {
+  std::string out(1, '"');
+  return out.append(text).append(1, '"');
+}
+
+// A strong tag of content that changes under its URL.
+std::string digestTag(std::span<const uint8_t> content) {
+  std::array<uint8_t, EVP_MAX_MD_SIZE> digest{};
+  EVP_Digest(content.data(), content.size(), digest.data(), nullptr, EVP_sha256(), nullptr);
+  return quoted(hexOf(std::span(digest).first(16)));
+}
+
+// A strong tag of an answer. Its URL fixes its content for ever; only the content of a QUERY can
+// make two answers differ, and those differ in checksum or length.
+std::string answerTag(std::span<const uint8_t> content) {
+  std::string tag = hexOf(content.last(std::min<size_t>(content.size(), 4)));
+  return quoted(tag.append("-").append(std::to_string(content.size())));
+}
+
+void setAge(HttpResponse& response, std::optional<std::chrono::seconds> age) {
+  if (age) response.set("Age", std::to_string(std::max<int64_t>(age->count(), 0)));
+}
+
+HttpResponse immutableResponse(HeldBytes content, std::string etag,
+                               std::optional<std::chrono::seconds> age) {
+  HttpResponse response;
+  response.content = std::move(content);
+  response.set("Content-Type", kBinary);
+  response.set("Cache-Control", kImmutable);
+  response.set("ETag", std::move(etag));
+  setAge(response, age);
+  return response;
+}
+
+HttpResponse describedResponse(Described described) {
+  HttpResponse response;
+  response.content = std::move(described.json);
+  response.set("Content-Type", "application/json");
+  response.set("Cache-Control", kShort);
+  response.set("ETag", digestTag(response.content.bytes()));
+  setAge(response, described.age);
+  return response;
+}
+
+HttpResponse plainResponse(unsigned status, const char* contentType, std::string text) {
+  HttpResponse response;
+  response.status = status;
+  response.content = HeldBytes::of(std::move(text));
+  response.set("Content-Type", contentType);
+  response.set("Cache-Control", "no-store");
+  return response;
+}
+
+HttpResponse optionsResponse(RouteKind kind) {
+  HttpResponse response;
+  response.status = 204;
+  response.set("Allow", allowedMethods(kind));
+  response.set("Access-Control-Allow-Methods", allowedMethods(kind));
+  response.set("Access-Control-Allow-Headers", "Content-Type, If-None-Match");
+  response.set("Access-Control-Max-Age", "86400");
+  if (kind == RouteKind::querySplits) response.set("Accept-Query", kBinary);
+  return response;
+}
+
+HttpResponse wrongMethod(RouteKind kind) {
+  HttpResponse response =
+      problem(405, std::string("this resource answers ") + allowedMethods(kind));
+  response.set("Allow", allowedMethods(kind));
+  return response;
+}
+
+bool isAllowed(std::string_view method, RouteKind kind) {
+  if (kind == RouteKind::querySplits) return method == "QUERY";
+  return method == "GET" || method == "HEAD";
+}
+
+// The type alone; parameters of a binary type mean nothing.
+bool isBinary(std::string_view contentType) {
+  const std::string_view type = contentType.substr(0, contentType.find(';'));
+  const size_t end = type.find_last_not_of(" \t");
+  const std::string_view trimmed = type.substr(0, end == std::string_view::npos ? 0 : end + 1);
+  const std::string_view expected = kBinary;
+  return std::equal(trimmed.begin(), trimmed.end(), expected.begin(), expected.end(),
+                    [](char a, char b) { return (a >= 'A' && a <= 'Z' ? a + 32 : a) == b; });
+}
+
+const std::string* find(const HttpResponse& response, std::string_view name) {
+  for (const auto& [key, value] : response.headers)
+    if (key == name) return &value;
+  return nullptr;
+}
+
+}  // namespace
+
+RecordService::RecordService(Catalogue& catalogue, Metrics& metrics, Options options)
+    : catalogue_(catalogue),
+      metrics_(metrics),
+      options_(std::move(options)),
+      ids_(metrics.counter("meshfront_requested_ids_total",
+                           "Node IDs in requests for records, descendants not counted.")),
+      records_(metrics.counter("meshfront_records_total", "Records in answers.")),
+      recordBytes_(metrics.counter("meshfront_record_bytes_total",
+                                   "Bytes of answers with records, checksums included.")) {
+  for (unsigned kind = 0; kind < kRouteKinds; ++kind)
+    for (size_t i = 0; i < kStatuses.size(); ++i)
+      requests_[kind][i] =
+          &metrics.counter("meshfront_requests_total", "Requests answered, by resource and status.",
+                           std::string("route=\"") + routeName(static_cast<RouteKind>(kind)) +
+                               "\",status=\"" + std::to_string(kStatuses[i]) + "\"");
+}
+
+std::optional<HttpResponse> RecordService::answerAtOnce(const HttpRequest& request) {
+  const Route route = parseTarget(request.target);
+  auto response = respond(request, route, Waiting::refused);
+  if (response) return finish(std::move(*response), request, route);
+  const ErrorCode code = response.error().code;
+  if (code == ErrorCode::unavailable || code == ErrorCode::timedOut) return std::nullopt;
+  return finish(problemFor(response.error()), request, route);
+}
+
+HttpResponse RecordService::answer(const HttpRequest& request) {
+  const Route route = parseTarget(request.target);
+  auto response = respond(request, route, Waiting::allowed);
+  return finish(response ? std::move(*response) : problemFor(response.error()), request, route);
+}
+
+HttpResponse RecordService::overloaded(const HttpRequest& request) {
+  HttpResponse response = problem(503, "too many requests are waiting; try again later");
+  response.set("Retry-After", "1");
+  return finish(std::move(response), request, parseTarget(request.target));
+}
+
+Result<HttpResponse> RecordService::respond(const HttpRequest& request, const Route& route,
+                                            Waiting waiting) {
+  if (request.target.size() > kMaxTargetOctets)
+    return problem(414, "the URL is longer than 8000 octets; send the set by QUERY");
+  if (route.kind == RouteKind::unknown) return problem(404, "no such resource");
+  if (request.method == "OPTIONS") return optionsResponse(route.kind);
+  if (!isAllowed(request.method, route.kind)) return wrongMethod(route.kind);
+  if (request.contentTooLarge)
+    return problem(413, "the content is longer than " + std::to_string(kMaxContentOctets) +
+                            " octets; ask for fewer nodes at a time");
+  const bool takesQuery = route.kind == RouteKind::splits || route.kind == RouteKind::querySplits;
+  if (route.hasQuery && !takesQuery) return problem(400, "this resource takes no query");
+  return dispatch(request, route, waiting);
+}
+
+Result<HttpResponse> RecordService::dispatch(const HttpRequest& request, const Route& route,
+                                             Waiting waiting) {
+  switch (route.kind) {
+    case RouteKind::health:
+      return plainResponse(200, "text/plain; charset=utf-8", "ok\n");
+    case RouteKind::ready:
+      if (catalogue_.ready(waiting))
+        return plainResponse(200, "text/plain; charset=utf-8", "ready\n");
+      if (waiting == Waiting::refused) return fail(ErrorCode::unavailable, "not known yet");
+      return problem(503, "not ready");
+    case RouteKind::metrics:
+      return plainResponse(200, "text/plain; version=0.0.4; charset=utf-8", metrics_.text());
+    case RouteKind::catalogue:
+      return catalogue_.list(waiting).map(describedResponse);
+    case RouteKind::mesh:
+      return catalogue_.describe(route.mesh, waiting).map(describedResponse);
+    default:
+      break;
+  }
+  const auto opened = catalogue_.open(route.mesh, route.revision, waiting);
+  if (!opened) return tl::unexpected(opened.error());
+  RecordStore& store = **opened;
+  if (route.kind == RouteKind::splits || route.kind == RouteKind::querySplits)
+    return splits(request, route, store, waiting);
+  Result<HeldBytes> content;
+  if (route.kind == RouteKind::base) content = store.base(waiting);
+  if (route.kind == RouteKind::chunks) content = store.chunkIndex(waiting);
+  if (route.kind == RouteKind::chunk) {
+    const auto number = canonicalNumber(route.last);
+    if (!number) return problem(400, "a chunk's number is a decimal number without leading zeros");
+    content = store.chunk(*number, waiting);
+  }
+  if (!content) return tl::unexpected(content.error());
+  return immutableResponse(std::move(*content), quoted(route.revision), store.age());
+}
+
+Result<HttpResponse> RecordService::splits(const HttpRequest& request, const Route& route,
+                                           RecordStore& store, Waiting waiting) {
+  const bool byQuery = route.kind == RouteKind::querySplits;
+  if (byQuery && !isBinary(request.contentType)) {
+    HttpResponse response = problem(415, "the set comes as application/octet-stream");
+    response.set("Accept-Query", kBinary);
+    return response;
+  }
+  const auto maxLevel = store.maxLevel();
+  if (!maxLevel) return tl::unexpected(maxLevel.error());
+  const size_t maxWanted = options_.limits.maxWanted;
+  const auto set =
+      byQuery ? parseSplitQuery(request.content, route.hasQuery, route.query, *maxLevel, maxWanted)
+              : parseSplitUrl(route.last, route.hasQuery, route.query, *maxLevel, maxWanted);
+  if (!set)
+    return problem(set.error().code == ErrorCode::tooLarge ? 413 : 400, set.error().message);
+
+  auto answer = store.collect(set->wanted, set->expansion, options_.limits, waiting);
+  if (!answer) return tl::unexpected(answer.error());
+  ids_.add(set->wanted.size());
+  records_.add(answer->records);
+  recordBytes_.add(answer->bytes.size());
+  std::string etag = answerTag(answer->bytes);
+  HttpResponse response =
+      immutableResponse(HeldBytes::of(std::move(answer->bytes)), std::move(etag), store.age());
+  if (byQuery) {
+    std::string target = splitTarget(route.mesh, route.revision, request.content, set->expansion);
+    if (target.size() <= kMaxTargetOctets) response.set("Content-Location", std::move(target));
+  }
+  return response;
+}
+
+HttpResponse RecordService::finish(HttpResponse response, const HttpRequest& request,
+                                   const Route& route) {
+  if (response.status == 200 && !request.ifNoneMatch.empty()) {
+    const std::string* etag = find(response, "ETag");
+    if (etag != nullptr && ifNoneMatchHolds(request.ifNoneMatch, *etag)) {
+      response.status = 304;
+      response.content = {};
+      std::erase_if(response.headers, [](const auto& field) {
+        return std::string_view(field.first) == "Content-Type";
+      });
+    }
+  }
+  response.set("Access-Control-Allow-Origin", "*");
+  if (!options_.via.empty()) response.set("Via", options_.via);
+  size_t status = 0;
+  while (status + 1 < kStatuses.size() && kStatuses[status] != response.status) ++status;
+  requests_[static_cast<unsigned>(route.kind)][status]->add();
+  return response;
+}
+
+}  // namespace meshfront
