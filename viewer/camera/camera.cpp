@@ -10,6 +10,8 @@ namespace {
 
 // The nearest plane as a share of the farthest: float depth, reversed, carries it easily.
 constexpr double kNearestShare = 1e-5;
+// Of the picture's height or width, taken by a mesh's box that was made to fit.
+constexpr double kFilledShare = 0.96;
 // How near to straight up or down an orbit may come, radians.
 constexpr double kPoleMargin = 0.01;
 
@@ -126,13 +128,25 @@ void zoomTo(Camera& camera, const glm::dvec3& point, double factor) {
 void fitTo(Camera& camera, const Bounds& bounds, double aspect) {
   const glm::dvec3 forward = viewAxes(camera).forward;
   camera.target = bounds.center();
-  camera.eye =
-      camera.target - forward * fittingDistance(bounds.radius(), camera.verticalFov, aspect);
+  camera.eye = camera.target - forward * fittingDistance(camera, bounds, aspect);
 }
 
-double fittingDistance(double radius, double verticalFov, double aspect) {
-  const double tangent = std::tan(0.5 * verticalFov) * std::min(1.0, aspect);
-  return radius / std::sin(std::atan(tangent));
+double fittingDistance(const Camera& camera, const Bounds& bounds, double aspect) {
+  const ViewAxes axes = viewAxes(camera);
+  const double tangent = std::tan(0.5 * camera.verticalFov) * kFilledShare;
+  double distance = 0;
+  for (int corner = 0; corner < 8; ++corner) {
+    const glm::dvec3 place((corner & 1) != 0 ? bounds.max.x : bounds.min.x,
+                           (corner & 2) != 0 ? bounds.max.y : bounds.min.y,
+                           (corner & 4) != 0 ? bounds.max.z : bounds.min.z);
+    const glm::dvec3 offset = place - camera.target;
+    const double aside = std::abs(glm::dot(offset, axes.right)) / aspect;
+    const double above = std::abs(glm::dot(offset, axes.upward));
+    distance =
+        std::max(distance, std::max(aside, above) / tangent - glm::dot(offset, axes.forward));
+  }
+  // A single point, or a view along a flat box's edge: any distance shows it.
+  return std::max(distance, 0.1 * bounds.radius());
 }
 
 }  // namespace meshfront

@@ -75,9 +75,9 @@ void pan(Camera& camera, glm::dvec2 pixels, int pictureHeight);
 // Scales the view's distance to `point` by `factor` (below 1: nearer); the point stays where it is
 // in the picture.
 void zoomTo(Camera& camera, const glm::dvec3& point, double factor);
-// Keeps the direction; moves so that the bounds' sphere fills the picture's shorter side.
+// Keeps the direction; looks at the bounds' centre from where the box just fits the picture.
 void fitTo(Camera& camera, const Bounds& bounds, double aspect);
-// The distance from the sphere's centre at which a sphere of `radius` touches the picture's edges.
-[[nodiscard]] double fittingDistance(double radius, double verticalFov, double aspect);
+// How far along the camera's view its eye must be from the target for the box to fit the picture.
+[[nodiscard]] double fittingDistance(const Camera& camera, const Bounds& bounds, double aspect);
 
 }  // namespace meshfront

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/trigonometric.hpp>
+#include <utility>
 #include <vector>
 
 namespace meshfront {
@@ -15,7 +16,7 @@ const std::string_view kCameraSpecHelp =
     "Presets:\n"
     "  whole                 the whole mesh fills the picture: zoom=1 (default)\n"
     "  half                  about half of it: zoom=2\n"
-    "  close                 a close-up of its middle: zoom=8\n"
+    "  close                 a close-up of its middle: zoom=4\n"
     "Settings:\n"
     "  azimuth=DEGREES       around the up axis, 0 from the front [30]\n"
     "  elevation=DEGREES     above the horizon, -90 to 90 [20]\n"
@@ -30,7 +31,7 @@ const std::string_view kCameraSpecHelp =
 namespace {
 
 constexpr double kHalfZoom = 2;
-constexpr double kCloseZoom = 8;
+constexpr double kCloseZoom = 4;
 // From straight above, the azimuth still says which way is up in the picture.
 constexpr double kHighestElevation = 90 - 1e-3;
 // A mesh at most this flat in z, against its shorter other side, is taken for a terrain.
@@ -243,8 +244,11 @@ Camera placeCamera(const CameraSpec& spec, const Bounds& bounds, double aspect) 
   const glm::dvec3 toEye =
       std::cos(elevation) * (std::cos(azimuth) * front + std::sin(azimuth) * side) +
       std::sin(elevation) * up;
-  const double distance = spec.distance ? *spec.distance * bounds.radius()
-                                        : fittingDistance(bounds.radius(), fov, aspect);
+  camera.eye = camera.target + toEye * bounds.radius();
+  const double zoomed = std::exchange(camera.verticalFov, fov);
+  const double distance =
+      spec.distance ? *spec.distance * bounds.radius() : fittingDistance(camera, bounds, aspect);
+  camera.verticalFov = zoomed;
   camera.eye = camera.target + toEye * distance;
   return camera;
 }

@@ -29,9 +29,9 @@ uniform bool flatShading;
 layout(location = 0) out vec4 colour;
 layout(location = 1) out uint item;
 
-const vec3 kClay = vec3(0.58, 0.43, 0.32);  // linear
-const vec3 kKeyDirection = vec3(-0.32, 0.42, 0.85);
-const vec3 kFillDirection = vec3(0.80, -0.10, 0.60);
+const vec3 kClay = vec3(0.56, 0.37, 0.26);  // linear
+const vec3 kKeyDirection = vec3(-0.45, 0.55, 0.70);
+const vec3 kFillDirection = vec3(0.85, -0.05, 0.45);
 
 vec3 surfaceNormal() {
   // On the side of the viewer whichever way the triangle is turned.
@@ -46,12 +46,12 @@ vec3 surfaceNormal() {
 vec3 shaded(vec3 n) {
   vec3 toEye = normalize(-viewPosition);
   vec3 key = normalize(kKeyDirection);
-  float keyed = max((dot(n, key) + 0.15) / 1.15, 0.0);
+  float keyed = max((dot(n, key) + 0.08) / 1.08, 0.0);
   float filled = max(dot(n, normalize(kFillDirection)), 0.0);
-  vec3 sky = mix(vec3(0.10, 0.085, 0.08), vec3(0.20, 0.22, 0.25), 0.5 + 0.5 * n.y);
-  vec3 light = sky + keyed * vec3(1.02, 0.99, 0.94) + filled * vec3(0.12, 0.13, 0.16);
-  float gloss = pow(max(dot(n, normalize(key + toEye)), 0.0), 28.0) * 0.07;
-  float rim = pow(1.0 - clamp(dot(n, toEye), 0.0, 1.0), 4.0) * 0.05;
+  vec3 sky = mix(vec3(0.055, 0.045, 0.045), vec3(0.13, 0.15, 0.18), 0.5 + 0.5 * n.y);
+  vec3 light = sky + keyed * vec3(0.98, 0.94, 0.88) + filled * vec3(0.10, 0.115, 0.15);
+  float gloss = pow(max(dot(n, normalize(key + toEye)), 0.0), 32.0) * 0.06;
+  float rim = pow(1.0 - clamp(dot(n, toEye), 0.0, 1.0), 4.0) * 0.06;
   return kClay * light + gloss + rim;
 }
 
