@@ -62,7 +62,7 @@ Result<int> verify(const std::string& path, const std::string& against, unsigned
   std::optional<Quantization> grid = (*pack)->metadata().quantization;
   const auto expected = publishedMesh(against, grid, grid->bits);
   if (!expected) return tl::unexpected(expected.error());
-  PackStore store(*pack, std::make_shared<IndexBudget>(kIndexBudget));
+  PackStore store(*pack, std::make_shared<MemoryBudget>(kIndexBudget));
   unsigned wrong = 0;
   ordered_json rows = ordered_json::array();
   const auto results = verifyOrders(store, *expected, orders, [&](const OrderResult& r) {
@@ -99,7 +99,7 @@ Result<std::optional<ExpectedMesh>> fromPack(const std::string& path,
   if (extension != ".pack") return std::optional<ExpectedMesh>();
   auto pack = Pack::open(path);
   if (!pack) return tl::unexpected(pack.error());
-  PackStore store(*pack, std::make_shared<IndexBudget>(kIndexBudget));
+  PackStore store(*pack, std::make_shared<MemoryBudget>(kIndexBudget));
   const auto mesh = fullMesh(store);
   if (!mesh) return tl::unexpected(mesh.error());
   grid = (*pack)->metadata().quantization;

@@ -75,8 +75,9 @@ TEST(TreeBitstring, GivesSetsBackAndTakesOneEncoding) {
     // Whatever else decodes must encode to itself: no two byte strings mean one set.
     Bytes other = bytes;
     other[random() % other.size()] ^= static_cast<uint8_t>(1U << random() % 8);
-    if (const auto set = decodeTreeBitstring(other, 10000))
+    if (const auto set = decodeTreeBitstring(other, 10000)) {
       EXPECT_EQ(encodeTreeBitstring(*set).value(), other);
+    }
     Bytes longer = bytes;
     longer.push_back(0);
     EXPECT_FALSE(decodeTreeBitstring(longer, 10000));
