@@ -1,5 +1,6 @@
 #include "proxy/record_cache.h"
 
+#include <algorithm>
 #include <bit>
 
 #include "shared/bits/bit_reader.h"
@@ -92,11 +93,13 @@ std::optional<ChildFacts> RecordCache::Reader::find(const NodeId& node, BitWrite
 }
 
 void RecordCache::release(size_t bytes) {
-  const size_t share = bytes / kShards + 1;
-  for (Shard& shard : shards_) {
+  const size_t total = bytes_;
+  if (total == 0) return;
+  for (Shard& shard : shards_) {  // each its part
     const std::unique_lock lock(shard.mutex);
     const size_t before = shard.bytes();
-    const size_t goal = before > share ? before - share : 0;
+    const double part = std::min(1.0, static_cast<double>(bytes) / static_cast<double>(total));
+    const auto goal = static_cast<size_t>(static_cast<double>(before) * (1 - part));
     shard.eviction.evict(
         shard.table, [&] { return shard.bytes() <= goal; },
         [&](const CachedRecord& record) { release(shard, record); });

@@ -248,8 +248,8 @@ HttpResponse RecordService::finish(HttpResponse response, const HttpRequest& req
   if (response.status == 200 && !request.ifNoneMatch.empty()) {
     const std::string* etag = find(response, "ETag");
     if (etag != nullptr && ifNoneMatchHolds(request.ifNoneMatch, *etag)) {
-      response.status = 304;
-      response.content = {};
+      response.status =
+          304;  // keeps the content's length, as HEAD does; the front sends none of it
       std::erase_if(response.headers, [](const auto& field) {
         return std::string_view(field.first) == "Content-Type";
       });

@@ -119,7 +119,7 @@ std::string_view Pack::reportJson() const {
 
 Result<std::span<const uint8_t>> Pack::chunk(uint32_t number) const {
   if (number >= state_->metadata.chunkCount)
-    return fail(ErrorCode::notFound, "pack: no chunk of that number");
+    return fail(ErrorCode::notFound, "no chunk of that number");
   return state_->get(pack_keys::chunk(number));
 }
 
