@@ -1,0 +1,375 @@
+#include "encoder/simplification/simplify.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <numeric>
+#include <set>
+#include <string>
+
+#include "encoder/cleaning/close_mesh.h"
+#include "shared/hierarchy/node_id.h"
+#include "tests/data/closed_manifold_check.h"
+#include "tests/data/mesh_shapes.h"
+#include "tests/data/nasty_meshes.h"
+
+namespace meshfront {
+namespace {
+
+struct Input {
+  std::vector<GridPosition> positions;
+  uint32_t virtualCount = 0;
+  std::vector<Triangle> triangles;
+  size_t realTriangleCount = 0;
+};
+
+Input closed(const IndexedMesh& mesh, unsigned bits = kDefaultQuantizationBits) {
+  CleaningReport report;
+  const Result<ClosedMesh> result = closeMesh(mesh, report);
+  Input input;
+  if (!result) return input;
+  const Quantization grid = quantizationFor(result->positions, bits);
+  for (const auto& p : result->positions) input.positions.push_back(grid.toGrid(p));
+  input.virtualCount = result->virtualCount;
+  input.triangles = result->triangles;
+  input.realTriangleCount = result->realTriangleCount;
+  return input;
+}
+
+Simplification simplify(const Input& input, const SimplifyOptions& options = {}) {
+  return meshfront::simplify(input.positions, input.virtualCount, input.triangles,
+                             input.realTriangleCount, options);
+}
+
+SimplifyOptions options(double baseFraction, unsigned balance) {
+  SimplifyOptions result;
+  result.baseFraction = baseFraction;
+  result.balance = balance;
+  return result;
+}
+
+// Replays a log on sets of faces: slow, and nothing in common with the simplifier.
+class FaceSetModel {
+ public:
+  explicit FaceSetModel(const Input& input)
+      : realCount_(input.positions.size()),
+        faces_(input.positions.size() + input.virtualCount),
+        heights_(faces_.size(), 0) {
+    for (const Triangle& t : input.triangles) {
+      for (const uint32_t v : t) faces_[v].insert(fromSmallest(t));
+    }
+  }
+
+  // Empty, or what rule the collapse breaks.
+  [[nodiscard]] std::string whyRefused(const Collapse& collapse) const {
+    const auto [kept, removed] = collapse;
+    if (kept >= realCount_ || removed >= realCount_) return "virtual vertex";
+    if (kept == removed || faces_[removed].empty() || faces_[kept].empty()) return "vertex is gone";
+    const std::set<uint32_t> a = neighbours(kept);
+    const std::set<uint32_t> b = neighbours(removed);
+    if (!a.contains(removed)) return "no edge";
+    std::set<uint32_t> common;
+    std::set_intersection(a.begin(), a.end(), b.begin(), b.end(),
+                          std::inserter(common, common.begin()));
+    if (common.size() != 2) return "link condition";
+    if (a.size() == 3 && b.size() == 3) return "tetrahedron";
+    if (std::max(heights_[kept], heights_[removed]) >= kMaxDepth) return "too deep";
+    return {};
+  }
+  // The same, and does it if allowed.
+  std::string apply(const Collapse& collapse) {
+    if (std::string why = whyRefused(collapse); !why.empty()) return why;
+    const auto [kept, removed] = collapse;
+    heights_[kept] = 1 + std::max(heights_[kept], heights_[removed]);
+    const std::set<Triangle> moved = faces_[removed];
+    for (const Triangle& t : moved) {
+      for (const uint32_t v : t) faces_[v].erase(t);
+      Triangle renamed = t;
+      std::replace(renamed.begin(), renamed.end(), removed, kept);
+      if (std::count(renamed.begin(), renamed.end(), kept) > 1) continue;
+      for (const uint32_t v : renamed) faces_[v].insert(fromSmallest(renamed));
+    }
+    return {};
+  }
+
+  [[nodiscard]] std::vector<Triangle> triangles() const {
+    std::set<Triangle> all;
+    for (const auto& faces : faces_) all.insert(faces.begin(), faces.end());
+    return {all.begin(), all.end()};
+  }
+  [[nodiscard]] std::string whyNotManifold() const {
+    std::vector<Triangle> triangles = this->triangles();
+    std::map<uint32_t, uint32_t> compact;
+    for (Triangle& t : triangles) {
+      for (uint32_t& v : t) {
+        v = compact.try_emplace(v, static_cast<uint32_t>(compact.size())).first->second;
+      }
+    }
+    return whyNotClosedManifold(compact.size(), triangles);
+  }
+  // Whether some edge between real vertices could still go.
+  [[nodiscard]] bool canCollapse() const {
+    for (const Triangle& t : triangles()) {
+      for (size_t i = 0; i < 3; ++i) {
+        if (whyRefused({t[i], t[(i + 1) % 3]}).empty()) return true;
+      }
+    }
+    return false;
+  }
+  [[nodiscard]] unsigned maxHeight() const {
+    return *std::max_element(heights_.begin(), heights_.end());
+  }
+
+ private:
+  static Triangle fromSmallest(Triangle t) {
+    std::rotate(t.begin(), std::min_element(t.begin(), t.end()), t.end());
+    return t;
+  }
+  [[nodiscard]] std::set<uint32_t> neighbours(uint32_t vertex) const {
+    std::set<uint32_t> result;
+    for (const Triangle& t : faces_[vertex]) result.insert(t.begin(), t.end());
+    result.erase(vertex);
+    return result;
+  }
+
+  size_t realCount_;
+  std::vector<std::set<Triangle>> faces_;  // by corner; each from its smallest corner
+  std::vector<unsigned> heights_;
+};
+
+void expectValid(const Input& input, const Simplification& result, const std::string& name) {
+  SCOPED_TRACE(name);
+  FaceSetModel model(input);
+  for (size_t i = 0; i < result.collapses.size(); ++i) {
+    ASSERT_EQ(model.apply(result.collapses[i]), "") << "collapse " << i;
+  }
+  EXPECT_EQ(model.whyNotManifold(), "");
+  const SimplifyReport& report = result.report;
+  EXPECT_EQ(model.maxHeight(), report.maxHeight);
+  EXPECT_EQ(report.baseVertices + result.collapses.size(), input.positions.size());
+  if (report.why == StopReason::reachedBase) {
+    EXPECT_LE(report.baseVertices, report.wantedVertices);
+  } else {
+    EXPECT_EQ(report.why, StopReason::noValidCollapse);
+    EXPECT_GT(report.baseVertices, report.wantedVertices);
+    EXPECT_FALSE(model.canCollapse());
+  }
+}
+
+TEST(Simplify, LogsAreValidOnNastyMeshes) {
+  size_t collapses = 0;
+  for (const NastyMesh& nasty : nastyMeshes()) {
+    if (nasty.vanishes || nasty.mesh.triangles.size() > 20000) continue;
+    const Input input = closed(nasty.mesh);
+    const Simplification result = simplify(input, options(0, 1));
+    expectValid(input, result, nasty.name);
+    collapses += result.collapses.size();
+  }
+  EXPECT_GT(collapses, 100U);
+}
+
+TEST(Simplify, LogsAreValidOnRandomSoups) {
+  for (uint32_t seed = 0; seed < 20; ++seed) {
+    const Input input = closed(randomSoup(seed, 10 + 10 * seed, 300));
+    ASSERT_FALSE(input.triangles.empty());
+    expectValid(input, simplify(input, options(0, seed % 3)), "seed " + std::to_string(seed));
+  }
+}
+
+TEST(Simplify, ReachesTheBaseAskedFor) {
+  const Input input = closed(sphere(4));  // 1026 vertices
+  for (const double fraction : {1.0, 0.5, 0.1, 0.02}) {
+    const Simplification result = simplify(input, options(fraction, 1));
+    expectValid(input, result, std::to_string(fraction));
+    EXPECT_EQ(result.report.why, StopReason::reachedBase);
+    EXPECT_EQ(result.report.baseVertices, std::ceil(fraction * 1026));
+  }
+}
+
+TEST(Simplify, TakesAnyFractionForAValidOne) {
+  const Input input = closed(sphere(2));
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  for (const double fraction : {0.0, -1.0, nan}) {
+    EXPECT_EQ(simplify(input, options(fraction, 1)).report.baseVertices, 4U);
+  }
+  EXPECT_TRUE(simplify(input, options(7, 1)).collapses.empty());
+}
+
+TEST(Simplify, LeavesTetrahedraAlone) {
+  IndexedMesh mesh;
+  for (int i = 0; i < 3; ++i) appendMesh(mesh, tetrahedron(), {3.0 * i, 0, 0});
+  const Simplification result = simplify(closed(mesh), options(0, 1));
+  EXPECT_TRUE(result.collapses.empty());
+  EXPECT_EQ(result.report.why, StopReason::noValidCollapse);
+  EXPECT_EQ(result.report.baseVertices, 12U);
+}
+
+TEST(Simplify, ReducesEachComponentToATetrahedron) {
+  IndexedMesh mesh;
+  for (int i = 0; i < 20; ++i) appendMesh(mesh, sphere(1), {3.0 * i, 0, 0});
+  const Input input = closed(mesh);
+  const Simplification result = simplify(input, options(0, 1));
+  expectValid(input, result, "spheres");
+  EXPECT_EQ(result.report.baseVertices, 80U);
+}
+
+TEST(Simplify, KeepsTheGenusOfATorus) {
+  const Input input = closed(torus(24, 12));
+  const Simplification result = simplify(input, options(0, 1));
+  expectValid(input, result, "torus");
+  EXPECT_GE(result.report.baseVertices, 7U);  // the smallest triangulation there is
+  EXPECT_LE(result.report.baseVertices, 12U);
+}
+
+TEST(Simplify, IsTheSameEachTime) {
+  const Input input = closed(gridPatch(30, 30));
+  const Simplification first = simplify(input);
+  const Simplification second = simplify(input);
+  ASSERT_EQ(first.collapses.size(), second.collapses.size());
+  for (size_t i = 0; i < first.collapses.size(); ++i) {
+    EXPECT_EQ(first.collapses[i].kept, second.collapses[i].kept);
+    EXPECT_EQ(first.collapses[i].removed, second.collapses[i].removed);
+  }
+}
+
+TEST(Simplify, PutsTheFlatBeforeTheBent) {
+  // A plane with one spike: the spike's tip must outlast nearly all of the plane.
+  IndexedMesh mesh = gridPatch(20, 20);
+  const uint32_t tip = 21 * 10 + 10;
+  mesh.positions[tip][2] = 5;
+  const Input input = closed(mesh);
+  ASSERT_GT(input.positions[tip][2], 0);
+  const Simplification result = simplify(input, options(0.04, 1));
+  EXPECT_EQ(result.report.why, StopReason::reachedBase);
+  for (const Collapse& collapse : result.collapses) EXPECT_NE(collapse.removed, tip);
+}
+
+TEST(Simplify, KeepsOutlines) {
+  const Input input = closed(gridPatch(20, 20), 10);
+  const Simplification result = simplify(input, options(0.05, 1));
+  expectValid(input, result, "plane");
+  std::vector<bool> alive(input.positions.size(), true);
+  for (const Collapse& collapse : result.collapses) alive[collapse.removed] = false;
+  size_t corners = 0;
+  for (size_t v = 0; v < alive.size(); ++v) {
+    const auto [x, y, z] = input.positions[v];
+    if (alive[v] && (x == 0 || x == 1023) && (y == 0 || y == 1023)) ++corners;
+  }
+  EXPECT_EQ(corners, 4U);
+  // Every vertex that was on the outline stands for, and went to, one on the outline.
+  const auto onOutline = [&](uint32_t v) {
+    const auto [x, y, z] = input.positions[v];
+    return x == 0 || x == 1023 || y == 0 || y == 1023;
+  };
+  for (const Collapse& collapse : result.collapses) {
+    if (onOutline(collapse.removed)) {
+      EXPECT_TRUE(onOutline(collapse.kept));
+    }
+  }
+}
+
+TEST(Simplify, TurnsNoFaceOverUnlessNothingElseIsLeft) {
+  const Input input = closed(gridPatch(24, 24), 12);
+  const Simplification result = simplify(input, options(0.05, 0));
+  EXPECT_EQ(result.report.acceptedFlips, 0U);
+  FaceSetModel model(input);
+  for (const Collapse& collapse : result.collapses) ASSERT_EQ(model.apply(collapse), "");
+  for (const Triangle& t : model.triangles()) {
+    if (std::max({t[0], t[1], t[2]}) >= input.positions.size()) continue;
+    const GridPosition& a = input.positions[t[0]];
+    const GridPosition& b = input.positions[t[1]];
+    const GridPosition& c = input.positions[t[2]];
+    EXPECT_GT((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]), 0);
+  }
+}
+
+TEST(Simplify, EndsWhenAllPointsAreEqual) {
+  for (unsigned balance : {0U, 1U, 2U}) {
+    Input input = closed(sphere(4));
+    for (GridPosition& p : input.positions) p = {5, 5, 5};
+    const Simplification result = simplify(input, options(0, balance));
+    expectValid(input, result, "balance " + std::to_string(balance));
+  }
+}
+
+TEST(Simplify, BalanceKeepsTreesShallow) {
+  const Input input = closed(gridPatch(60, 60));
+  const unsigned loose = simplify(input, options(0, 0)).report.maxHeight;
+  const unsigned balanced = simplify(input, options(0, 1)).report.maxHeight;
+  const unsigned tight = simplify(input, options(0, 2)).report.maxHeight;
+  EXPECT_LT(balanced, loose);
+  EXPECT_LE(tight, balanced);
+  EXPECT_LE(balanced, 30U);
+}
+
+TEST(Simplify, CopesWithOneVertexOfHugeValence) {
+  // Two tips over a ring: both have 5,000 neighbours.
+  constexpr uint32_t kAround = 5000;
+  Input input;
+  for (uint32_t i = 0; i < kAround; ++i) {
+    const double angle = 2 * 3.14159265358979 * i / kAround;
+    input.positions.push_back({static_cast<int>(std::lround(8000 + 8000 * std::cos(angle))),
+                               static_cast<int>(std::lround(8000 + 8000 * std::sin(angle))), 0});
+  }
+  input.positions.push_back({8000, 8000, 4000});
+  input.positions.push_back({8000, 8000, -4000});
+  for (uint32_t i = 0; i < kAround; ++i) {
+    const uint32_t next = (i + 1) % kAround;
+    input.triangles.push_back({i, next, kAround});
+    input.triangles.push_back({next, i, kAround + 1});
+  }
+  input.realTriangleCount = input.triangles.size();
+  const Simplification result = simplify(input, options(0.01, 1));
+  EXPECT_EQ(result.report.why, StopReason::reachedBase);
+  EXPECT_EQ(result.report.baseVertices, 51U);
+}
+
+TEST(Simplify, RefusesWhatIsNotClosed) {
+  const Input whole = closed(sphere(2));
+  Input broken = whole;
+  broken.triangles.pop_back();
+  EXPECT_EQ(simplify(broken).report.why, StopReason::notClosed);
+  broken.triangles.pop_back();  // an even number of corners again
+  EXPECT_EQ(simplify(broken).report.why, StopReason::notClosed);
+  broken = whole;
+  std::swap(broken.triangles[7][0], broken.triangles[7][1]);
+  EXPECT_EQ(simplify(broken).report.why, StopReason::notClosed);
+  broken = whole;
+  broken.triangles[3][2] = 1000;
+  EXPECT_EQ(simplify(broken).report.why, StopReason::notClosed);
+  // Two spheres that share a vertex: every edge is fine, the vertex has two fans.
+  IndexedMesh two = sphere(1);
+  const auto count = static_cast<uint32_t>(two.positions.size());
+  appendMesh(two, sphere(1), {2, 0, 0});
+  for (Triangle& t : two.triangles) std::replace(t.begin(), t.end(), count, 0U);
+  broken.positions.assign(two.positions.size(), {});
+  broken.triangles = two.triangles;
+  const Simplification result = simplify(broken);
+  EXPECT_EQ(result.report.why, StopReason::notClosed);
+  EXPECT_TRUE(result.collapses.empty());
+}
+
+TEST(Simplify, TakesAnEmptyMesh) {
+  const Simplification result = simplify(Input{});
+  EXPECT_TRUE(result.collapses.empty());
+  EXPECT_EQ(result.report.baseVertices, 0U);
+}
+
+TEST(Simplify, TellsItsProgress) {
+  const Input input = closed(gridPatch(200, 200));
+  std::vector<size_t> told;
+  const Simplification result =
+      meshfront::simplify(input.positions, input.virtualCount, input.triangles,
+                          input.realTriangleCount, {}, [&](size_t done, size_t planned) {
+                            EXPECT_LE(done, planned);
+                            told.push_back(done);
+                          });
+  ASSERT_EQ(told.size(), result.collapses.size() / 16384);
+  EXPECT_TRUE(std::is_sorted(told.begin(), told.end()));
+}
+
+}  // namespace
+}  // namespace meshfront
