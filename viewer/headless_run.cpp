@@ -39,26 +39,23 @@ ReceiverOptions receiverOptions(const ViewOptions& options) {
 class HeadlessRun {
  public:
   HeadlessRun(const ViewOptions& options, std::string renderer)
-      : options_(options), receiver_(options.url, receiverOptions(options), http_) {
-    summary_.url = options.urlText;
-    summary_.renderer = std::move(renderer);
-    summary_.psnrTarget = options.psnrTarget;
-    if (!summary_.psnrTarget && options.until.kind == Kind::psnr)
-      summary_.psnrTarget = options.until.decibels;
-  }
+      : options_(options),
+        renderer_(std::move(renderer)),
+        target_(options.until.kind == Kind::psnr ? options.until.decibels : options.psnrTarget),
+        receiver_(options.url, receiverOptions(options), http_) {}
 
   int run() {
     Result<void> done = refine();
     progress_.clear();
     if (done && picture_) done = writeResults();
     if (done && trace_) done = trace_->close();
-    summarize();
-    std::cout << (options_.json ? toJson(summary_) + "\n" : toText(summary_)) << std::flush;
+    const RunSummary result = summary();
+    std::cout << (options_.json ? toJson(result) + "\n" : toText(result)) << std::flush;
     if (!done) {
       std::cerr << "meshfront-view: " << done.error().message << '\n';
       return 1;
     }
-    if (!summary_.reason.empty()) std::cerr << "meshfront-view: " << summary_.reason << '\n';
+    if (!result.reason.empty()) std::cerr << "meshfront-view: " << result.reason << '\n';
     return succeeded() ? 0 : 1;
   }
 
@@ -111,16 +108,16 @@ class HeadlessRun {
   // What an answer gained: PSNR where it is asked for, and a line of the trace.
   Result<void> look() {
     const ReceiverStatistics& statistics = receiver_.statistics();
-    const bool wantsPsnr = reference_ && (trace_ || (summary_.psnrTarget && !targetReached()));
+    const bool wantsPsnr = reference_ && (trace_ || (target_ && !targetReached_));
     if (wantsPsnr) {
       if (Result<void> measured = measure(); !measured) return measured;
-      if (summary_.psnrTarget && !targetReached() && *summary_.psnr >= *summary_.psnrTarget)
-        summary_.targetReached = milestone(statistics, seconds());
+      if (target_ && !targetReached_ && *psnr_ >= *target_)
+        targetReached_ = milestone(statistics, seconds());
     }
     if (trace_) {
       trace_->write({seconds(), statistics.requests, statistics.records, statistics.traffic.bytesUp,
                      statistics.traffic.bytesDown(), receiver_.mesh()->drawnTriangleCount(),
-                     receiver_.visibleCandidateCount(), wantsPsnr ? summary_.psnr : std::nullopt});
+                     receiver_.visibleCandidateCount(), wantsPsnr ? psnr_ : std::nullopt});
     }
     progress_.show(seconds(), statistics.records, receiver_.mesh()->splitCount(),
                    statistics.traffic.bytesDown());
@@ -131,7 +128,7 @@ class HeadlessRun {
     if (Result<void> drawn = picture_->draw(*receiver_.mesh(), camera_, {}); !drawn) return drawn;
     const Result<double> psnr = peakSignalToNoise(picture_->read(), *reference_);
     if (!psnr) return tl::unexpected(psnr.error());
-    summary_.psnr = std::min(*psnr, kIdenticalPsnr);
+    psnr_ = std::min(*psnr, kIdenticalPsnr);
     return {};
   }
 
@@ -149,47 +146,44 @@ class HeadlessRun {
     return {};
   }
 
-  [[nodiscard]] bool targetReached() const { return summary_.targetReached.has_value(); }
-
   [[nodiscard]] bool stopped() const {
-    return interrupted() || timedOut() || (options_.until.kind == Kind::psnr && targetReached());
+    return interrupted() || timedOut() ||
+           (options_.until.kind == Kind::psnr && targetReached_.has_value());
   }
   [[nodiscard]] bool timedOut() const {
     return options_.timeout > 0 && seconds() >= options_.timeout;
   }
 
-  void summarize() {
-    summary_.state = stateName(receiver_.state());
+  [[nodiscard]] RunSummary summary() const {
+    RunSummary summary = summaryOf(receiver_, options_.urlText, seconds());
+    summary.renderer = renderer_;
+    summary.psnr = psnr_;
+    summary.psnrTarget = target_;
+    summary.targetReached = targetReached_;
+    if (picture_) summary.camera = formatCamera(camera_);
     if (receiver_.isAtWork()) {
-      if (options_.until.kind == Kind::psnr && targetReached()) {
-        summary_.state = "target reached";
+      if (options_.until.kind == Kind::psnr && targetReached_) {
+        summary.state = "target reached";
       } else if (interrupted()) {
-        summary_.state = "interrupted";
+        summary.state = "interrupted";
       } else if (timedOut()) {
-        summary_.state = "timed out";
+        summary.state = "timed out";
       }
     }
-    summary_.reason = receiver_.reason();
-    summary_.statistics = receiver_.statistics();
-    summary_.seconds = seconds();
-    if (const MeshMetadata* metadata = receiver_.metadata()) {
-      summary_.revision = metadata->revision;
-      summary_.splits = metadata->splitCount;
-    }
-    if (receiver_.mesh() == nullptr) return;
-    summary_.triangles = receiver_.mesh()->drawnTriangleCount();
-    summary_.camera = formatCamera(camera_);
+    return summary;
   }
 
   // A mesh that is complete, or settled, before it costs what it may cost has met its limit too.
   [[nodiscard]] bool succeeded() const {
     const ReceiverState state = receiver_.state();
-    if (options_.until.kind == Kind::psnr) return targetReached();
+    if (options_.until.kind == Kind::psnr) return targetReached_.has_value();
     return state == ReceiverState::complete || state == ReceiverState::limitReached ||
            (state == ReceiverState::settled && options_.until.kind == Kind::settled);
   }
 
   const ViewOptions& options_;
+  const std::string renderer_;
+  const std::optional<double> target_;  // dB
   const std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
   HttpFetcher http_;
   Receiver receiver_;
@@ -197,7 +191,8 @@ class HeadlessRun {
   std::optional<Picture> reference_;
   std::optional<TraceWriter> trace_;
   Camera camera_;
-  RunSummary summary_;
+  std::optional<double> psnr_;  // of the last picture measured
+  std::optional<Milestone> targetReached_;
   ProgressLine progress_;
 };
 

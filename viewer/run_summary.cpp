@@ -20,6 +20,21 @@ std::string decibels(double psnr) {
 
 }  // namespace
 
+RunSummary summaryOf(const Receiver& receiver, const std::string& url, double seconds) {
+  RunSummary summary;
+  summary.url = url;
+  summary.state = stateName(receiver.state());
+  summary.reason = receiver.reason();
+  summary.statistics = receiver.statistics();
+  summary.seconds = seconds;
+  if (const MeshMetadata* metadata = receiver.metadata()) {
+    summary.revision = metadata->revision;
+    summary.splits = metadata->splitCount;
+  }
+  if (receiver.mesh() != nullptr) summary.triangles = receiver.mesh()->drawnTriangleCount();
+  return summary;
+}
+
 Milestone milestone(const ReceiverStatistics& statistics, double seconds) {
   return {seconds, statistics.records, statistics.requests, statistics.traffic.bytesUp,
           statistics.traffic.bytesDown()};

@@ -36,6 +36,9 @@ struct RunSummary {
 
 inline constexpr double kIdenticalPsnr = 100;  // stands for infinity, which JSON cannot say
 
+// What the receiver knows; PSNR, target, camera and renderer are left to the caller.
+[[nodiscard]] RunSummary summaryOf(const Receiver& receiver, const std::string& url,
+                                   double seconds);
 [[nodiscard]] Milestone milestone(const ReceiverStatistics& statistics, double seconds);
 [[nodiscard]] std::string toText(const RunSummary& summary);  // lines
 [[nodiscard]] std::string toJson(const RunSummary& summary);  // one object, one line
