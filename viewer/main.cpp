@@ -1,0 +1,13 @@
+// meshfront-view: streams a mesh from a service and draws it, in a window or without one.
+#include "viewer/headless_run.h"
+#include "viewer/interrupt.h"
+#include "viewer/view_options.h"
+#include "viewer/window_run.h"
+
+int main(int argc, char** argv) {
+  const meshfront::ParsedOptions parsed = meshfront::parseViewOptions(argc, argv);
+  if (parsed.exitCode) return *parsed.exitCode;
+  meshfront::catchInterrupts();
+  return parsed.options.headless ? meshfront::runHeadless(parsed.options)
+                                 : meshfront::runWindow(parsed.options);
+}

@@ -1,0 +1,44 @@
+// Which front vertices to split next.
+//
+// Visual importance of a front vertex = pixels covered by its incident triangles (Cheng and Ooi
+// 2008, section 4.2). The default order puts the significance level in front of it, because pixels
+// alone spend most bytes on flat, well-covered parts.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "shared/refinement/selectively_refined_mesh.h"
+
+namespace meshfront {
+
+enum class RankOrder {
+  significance,  // level ascending, then pixels descending
+  pixels,        // pixels descending: the published order
+};
+
+struct Candidate {
+  NodeIndex node = kNone;
+  VertexSlot slot = kNone;
+  uint32_t pixels = 0;
+  uint8_t level = 0;
+};
+
+// Total order: ties fall to the lower slot, so that equal views ask for equal sets.
+[[nodiscard]] bool ranksBefore(RankOrder order, const Candidate& a, const Candidate& b);
+
+// Active, neither leaf nor virtual, `excluded[node]` not set (nodes beyond the span are not).
+// Visible ones: pixels[slot] > 0 (slots beyond the span count 0). By slot.
+[[nodiscard]] std::vector<Candidate> visibleCandidates(const SelectivelyRefinedMesh& mesh,
+                                                       std::span<const uint32_t> pixels,
+                                                       std::span<const uint8_t> excluded);
+// All of them, visible or not, with 0 pixels. By slot.
+[[nodiscard]] std::vector<Candidate> allCandidates(const SelectivelyRefinedMesh& mesh,
+                                                   std::span<const uint8_t> excluded);
+
+// Leaves the `count` first ones by `order`, sorted. O(n + count log count).
+void keepFirst(std::vector<Candidate>& candidates, size_t count, RankOrder order);
+
+}  // namespace meshfront

@@ -1,0 +1,46 @@
+// The command line of meshfront-view.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "viewer/camera/camera.h"
+#include "viewer/camera/camera_spec.h"
+#include "viewer/receiver/mesh_url.h"
+#include "viewer/receiver/ranking.h"
+#include "viewer/receiver/stop_condition.h"
+
+namespace meshfront {
+
+struct ViewOptions {
+  MeshUrl url;
+  std::string urlText;
+  bool headless = false;
+  PixelSize size{1280, 720};
+  CameraSpec camera;
+  RankOrder order = RankOrder::significance;
+  StopCondition until;
+  bool untilGiven = false;
+  uint32_t batch = 0;  // records; 0 = adaptive
+  uint32_t window = 2;
+  std::optional<std::filesystem::path> screenshot;
+  std::optional<std::filesystem::path> exportPly;
+  std::optional<std::filesystem::path> trace;
+  std::optional<std::filesystem::path> reference;
+  std::optional<double> psnrTarget;  // dB
+  bool json = false;
+  bool countOnCpu = false;
+  double timeout = 0;  // seconds; 0 = none
+};
+
+// Nothing to run (help, version, wrong usage): `exitCode` is set, and what there is to say has been
+// said. Else the options.
+struct ParsedOptions {
+  std::optional<int> exitCode;
+  ViewOptions options;
+};
+[[nodiscard]] ParsedOptions parseViewOptions(int argc, char** argv);
+
+}  // namespace meshfront
