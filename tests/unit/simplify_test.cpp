@@ -7,6 +7,7 @@
 #include <limits>
 #include <map>
 #include <numeric>
+#include <random>
 #include <set>
 #include <string>
 
@@ -325,6 +326,44 @@ TEST(Simplify, CopesWithOneVertexOfHugeValence) {
   const Simplification result = simplify(input, options(0.01, 1));
   EXPECT_EQ(result.report.why, StopReason::reachedBase);
   EXPECT_EQ(result.report.baseVertices, 51U);
+}
+
+// A ring around two tips; every other vertex of the ring is cut off from the lower tip, so that its
+// two neighbours are adjacent and may not go onto the upper tip.
+TEST(Simplify, KeepsTheLinkConditionAtHugeValences) {
+  constexpr uint32_t kAround = 200;
+  constexpr uint32_t kUpper = kAround;
+  constexpr uint32_t kLower = kAround + 1;
+  for (uint32_t seed = 0; seed < 10; ++seed) {
+    Input input;
+    std::mt19937 random(seed);
+    for (uint32_t v = 0; v < kAround + 2; ++v) {
+      const auto coordinate = [&] { return static_cast<int32_t>(random() % 20); };
+      input.positions.push_back({coordinate(), coordinate(), coordinate()});
+    }
+    for (uint32_t i = 0; i < kAround; i += 2) {
+      const uint32_t middle = i + 1;
+      const uint32_t next = (i + 2) % kAround;
+      input.triangles.push_back({i, middle, kUpper});
+      input.triangles.push_back({middle, next, kUpper});
+      input.triangles.push_back({next, middle, i});
+      input.triangles.push_back({next, i, kLower});
+    }
+    input.realTriangleCount = input.triangles.size();
+    expectValid(input, simplify(input, options(0, 0)), "seed " + std::to_string(seed));
+  }
+}
+
+// Whatever is in the way at first is tried again when the neighbourhood has changed.
+TEST(Simplify, TriesParkedVerticesAgain) {
+  for (uint32_t seed = 0; seed < 40; ++seed) {
+    Input input = closed(seed % 2 == 0 ? torus(9, 3 + seed % 5) : sphere(2));
+    std::mt19937 random(seed);
+    for (GridPosition& p : input.positions) {
+      for (int32_t& c : p) c = static_cast<int32_t>(random() % 1000);
+    }
+    expectValid(input, simplify(input, options(0, 1)), "seed " + std::to_string(seed));
+  }
 }
 
 TEST(Simplify, RefusesWhatIsNotClosed) {
