@@ -17,7 +17,7 @@ namespace meshfront {
 class HttpFront {
  public:
   struct Options {
-    ListenAddress address;
+    ListenAddress address{};
     unsigned threads = 1;         // that serve connections, >= 1
     unsigned waitingThreads = 0;  // that may wait for answers; 0: the handler never waits
     size_t maxWaitingRequests = 4096;
