@@ -159,8 +159,8 @@ TEST_F(PixelCounting, UndrawnTrianglesDrawNothingAndKeepTheSlots) {
   renderer_->draw(picture, mesh, planeCamera(), boundsOf(shape), {});
   picture.readItems(items);
   EXPECT_EQ(std::count_if(items.begin(), items.end(), [](uint32_t i) { return i == 6; }),
-            64 * 64 - std::count(items.begin(), items.end(), 0U));
-  EXPECT_NEAR(std::count(items.begin(), items.end(), 6U), 32 * 32 / 2, 32);
+            (64 * 64) - std::count(items.begin(), items.end(), 0U));
+  EXPECT_NEAR(std::count(items.begin(), items.end(), 6U), 512, 32);
 }
 
 TEST_F(PixelCounting, EmptyMeshDrawsAndCountsNothing) {
