@@ -1,7 +1,7 @@
 // The connectivity that is being simplified: OpenMesh's half-edges, filled in bulk and collapsed in
-// time that depends on the removed vertex's valence alone. OpenMesh's own add_face and collapse also
-// visit the rings of the other corners, and a virtual vertex has as many neighbours as its boundary.
-// Faces are left out: nothing here asks for them.
+// time that depends on the removed vertex's valence alone. OpenMesh's own add_face and collapse
+// also visit the rings of the other corners, and a virtual vertex has as many neighbours as its
+// boundary. Faces are left out: nothing here asks for them.
 #pragma once
 
 #include <OpenMesh/Core/Mesh/TriConnectivity.hh>

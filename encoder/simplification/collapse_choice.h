@@ -8,8 +8,8 @@
 #include <span>
 #include <vector>
 
-#include "encoder/simplification/collapsible_mesh.h"
 #include "encoder/simplification/collapse_queue.h"
+#include "encoder/simplification/collapsible_mesh.h"
 #include "encoder/simplification/simplify.h"
 #include "encoder/simplification/vertex_quadric.h"
 

@@ -21,7 +21,7 @@ OpenMesh::VertexHandle vertexHandle(uint32_t v) {
 }  // namespace
 
 bool CollapsibleMesh::build(uint32_t vertexCount, std::span<const Triangle> triangles,
-                       std::span<const uint32_t> newIndex) {
+                            std::span<const uint32_t> newIndex) {
   const size_t corners = triangles.size() * 3;
   if (corners % 2 != 0 || corners > static_cast<size_t>(std::numeric_limits<int>::max())) {
     return false;

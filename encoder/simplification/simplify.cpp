@@ -5,9 +5,9 @@
 #include <cmath>
 #include <numeric>
 
-#include "encoder/simplification/collapsible_mesh.h"
 #include "encoder/simplification/collapse_choice.h"
 #include "encoder/simplification/collapse_queue.h"
+#include "encoder/simplification/collapsible_mesh.h"
 #include "encoder/simplification/space_filling_order.h"
 
 namespace meshfront {

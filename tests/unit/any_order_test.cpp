@@ -1,5 +1,5 @@
-// The properties the system stands on, on meshes that are hard to get right: every front is the same
-// in whatever order it is reached, and the full front is the input.
+// The properties the system stands on, on meshes that are hard to get right: every front is the
+// same in whatever order it is reached, and the full front is the input.
 #include <gtest/gtest.h>
 #include <unistd.h>
 

@@ -98,7 +98,8 @@ TEST(ExpGolomb, HasTheStandardCodes) {
   EXPECT_EQ(out.bitCount(), 12U);
   EXPECT_EQ(out.take(), (Bytes{0b10100110, 0b01000000}));
   for (unsigned order = 0; order < 17; ++order) {
-    for (const uint64_t value : {uint64_t{0}, uint64_t{7}, uint64_t{100000}, uint64_t{UINT32_MAX}}) {
+    for (const uint64_t value :
+         {uint64_t{0}, uint64_t{7}, uint64_t{100000}, uint64_t{UINT32_MAX}}) {
       writeExpGolomb(out, value, order);
       const Bytes bytes = out.take();
       BitReader in(bytes);

@@ -52,10 +52,9 @@ SampleAnswer sampleAnswer() {
 
 Result<std::vector<RecordEntry>> parse(const SampleAnswer& sample, const Bytes& bytes) {
   const auto& base = torusRecords().base();
-  return parseAnswer(bytes, sample.wanted, sample.expansion, base.tables,
-                     [&](const NodeId& id) -> std::optional<unsigned> {
-                       return base.roots[id.tree].level;
-                     });
+  return parseAnswer(
+      bytes, sample.wanted, sample.expansion, base.tables,
+      [&](const NodeId& id) -> std::optional<unsigned> { return base.roots[id.tree].level; });
 }
 
 void expectErrors(const Bytes& good, const std::function<bool(const Bytes&)>& decodes) {
@@ -102,8 +101,8 @@ TEST(DamagedBytes, BaseWithRightChecksumNeverCrashesAMesh) {
     for (const auto& place : torusRecords().all()) {
       const auto node = mesh->find(place.entry.id);
       if (node && mesh->isActive(*node) && !mesh->isLeaf(*node))
-        static_cast<void>(mesh->split(*node, *place.bytes, place.entry.bitOffset,
-                                      place.entry.bitLength));
+        static_cast<void>(
+            mesh->split(*node, *place.bytes, place.entry.bitOffset, place.entry.bitLength));
     }
     return true;
   };

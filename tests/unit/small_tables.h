@@ -7,8 +7,9 @@
 
 namespace meshfront {
 
-// Header: 4 leaf flags x cut lengths {4, 6} = 8 symbols of 3 bits. Level differences 0 and 1: 1 bit;
-// pairs of them: 2 bits. Value classes: 8, pairs of them 6 bits. Residual classes 0 to 7: 3 bits.
+// Header: 4 leaf flags x cut lengths {4, 6} = 8 symbols of 3 bits. Level differences 0 and 1: 1
+// bit; pairs of them: 2 bits. Value classes: 8, pairs of them 6 bits. Residual classes 0 to 7: 3
+// bits.
 [[nodiscard]] inline CodeTables smallTables() {
   CodeTables tables;
   tables.maxLevel = 2;

@@ -40,9 +40,9 @@ std::vector<NodeId> randomSet(std::mt19937_64& random, unsigned deepest) {
 }
 
 TEST(NodeId, OrdersInPreorder) {
-  const std::vector<NodeId> order{node(0, ""),   node(0, "l"),  node(0, "ll"), node(0, "lr"),
-                                  node(0, "r"),  node(0, "rl"), node(0, "rr"), node(1, ""),
-                                  node(1, "rrr")};
+  const std::vector<NodeId> order{node(0, ""),   node(0, "l"), node(0, "ll"),
+                                  node(0, "lr"), node(0, "r"), node(0, "rl"),
+                                  node(0, "rr"), node(1, ""),  node(1, "rrr")};
   EXPECT_TRUE(std::is_sorted(order.begin(), order.end()));
   EXPECT_TRUE(node(0, "l").isAncestorOf(node(0, "lr")));
   EXPECT_TRUE(node(0, "lr").isAncestorOf(node(0, "lr")));
@@ -59,9 +59,8 @@ TEST(TreeBitstring, HasLiteralBytes) {
   // One tree (1001), its id 0 (1), its root wanted (00).
   EXPECT_EQ(encodeTreeBitstring(std::vector{node(0, "")}).value(), Bytes{0b10011000});
   // Two trees (1010); tree 1 (010): root 11, l 00, r 10, rl 00; tree 2 (gap 0: 1): root 01, r 00.
-  EXPECT_EQ(
-      encodeTreeBitstring(std::vector{node(1, "l"), node(1, "rl"), node(2, "r")}).value(),
-      (Bytes{0b10100101, 0b10010001, 0b01000000}));
+  EXPECT_EQ(encodeTreeBitstring(std::vector{node(1, "l"), node(1, "rl"), node(2, "r")}).value(),
+            (Bytes{0b10100101, 0b10010001, 0b01000000}));
 }
 
 TEST(TreeBitstring, GivesSetsBackAndTakesOneEncoding) {
