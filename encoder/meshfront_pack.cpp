@@ -73,12 +73,16 @@ Result<int> verify(const std::string& path, const std::string& against, unsigned
                     {"fronts", r.frontsChecked},
                     {"frontsWrong", r.frontsWrong},
                     {"collapses", r.collapses},
+                    {"requestBits", r.requestBits},
                     {"finalExact", r.finalExact}});
     if (!json)
-      fmt::print("{:<20} answers of {:>6}: {} fronts {}, {} collapses, full mesh {}\n", r.order,
-                 r.batch, r.frontsChecked,
-                 r.frontsWrong == 0 ? "exact" : fmt::format("{} WRONG", r.frontsWrong), r.collapses,
-                 r.finalExact ? "exact" : "WRONG");
+      fmt::print(
+          "{:<20} answers of {:>6}: {} fronts {}, {} collapses, full mesh {}, {:.1f} bits an ID\n",
+          r.order, r.batch, r.frontsChecked,
+          r.frontsWrong == 0 ? "exact" : fmt::format("{} WRONG", r.frontsWrong), r.collapses,
+          r.finalExact ? "exact" : "WRONG",
+          static_cast<double>(r.requestBits) /
+              static_cast<double>(std::max<uint64_t>((*pack)->metadata().splitCount, 1)));
   });
   if (!results) return tl::unexpected(results.error());
   if (json) {

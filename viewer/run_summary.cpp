@@ -52,7 +52,8 @@ std::string toText(const RunSummary& summary) {
     text << "; " << *is.recordsWhenSettled << " when the view had settled";
   text << "\ntriangles  " << summary.triangles;
   text << "\nrequests   " << is.requests << " for records, " << is.traffic.attempts << " in all";
-  text << "\nbytes up   " << is.traffic.bytesUp;
+  text << "\nbytes up   " << is.traffic.bytesUp
+       << " (sets of IDs: " << 8 * share(is.setOctets, is.idsRequested) << " bits an ID)";
   text << "\nbytes down " << is.traffic.bytesDown() << " (" << is.answerBytesDown << " of records, "
        << is.traffic.headerBytesDown << " of headers)";
   if (summary.psnr) text << "\nPSNR       " << decibels(*summary.psnr);
@@ -89,6 +90,8 @@ std::string toJson(const RunSummary& summary) {
       {"header_bytes_down", is.traffic.headerBytesDown},
       {"record_bytes_down", is.answerBytesDown},
       {"request_bytes_up", is.requestBytesUp},
+      {"ids_requested", is.idsRequested},
+      {"set_octets", is.setOctets},
       {"malformed_answers", is.malformed},
       {"seconds", summary.seconds},
       {"camera", summary.camera},

@@ -19,8 +19,8 @@ Result<SelectivelyRefinedMesh> baseOf(RecordStore& store) {
   return SelectivelyRefinedMesh::fromBase(std::move(*base));
 }
 
-Result<void> refine(RecordStore& store, SelectivelyRefinedMesh& mesh,
-                    std::span<const NodeIndex> nodes) {
+Result<uint64_t> refine(RecordStore& store, SelectivelyRefinedMesh& mesh,
+                        std::span<const NodeIndex> nodes) {
   std::vector<NodeId> wanted;
   for (const NodeIndex node : nodes) wanted.push_back(mesh.id(node));
   std::sort(wanted.begin(), wanted.end());
@@ -43,9 +43,9 @@ Result<void> refine(RecordStore& store, SelectivelyRefinedMesh& mesh,
   for (const RecordEntry& entry : *entries) {
     const auto done =
         mesh.split(*mesh.find(entry.id), answer->bytes, entry.bitOffset, entry.bitLength);
-    if (!done) return done;
+    if (!done) return tl::unexpected(done.error());
   }
-  return {};
+  return request->size() * 8;
 }
 
 Result<SelectivelyRefinedMesh> fullMesh(RecordStore& store) {

@@ -14,9 +14,9 @@ namespace meshfront {
 [[nodiscard]] Result<SelectivelyRefinedMesh> baseOf(RecordStore& store);
 
 // Asks for the records of front nodes (any order; encoded and decoded as a request) and applies
-// them.
-[[nodiscard]] Result<void> refine(RecordStore& store, SelectivelyRefinedMesh& mesh,
-                                  std::span<const NodeIndex> nodes);
+// them. Gives the request's length in bits.
+[[nodiscard]] Result<uint64_t> refine(RecordStore& store, SelectivelyRefinedMesh& mesh,
+                                      std::span<const NodeIndex> nodes);
 
 // Everything.
 [[nodiscard]] Result<SelectivelyRefinedMesh> fullMesh(RecordStore& store);

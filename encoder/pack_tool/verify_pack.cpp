@@ -10,7 +10,7 @@
 namespace meshfront {
 namespace {
 
-constexpr std::array<size_t, 4> kBatches = {1000, 37, 100000, 1};
+constexpr std::array<size_t, 4> kBatches = {2000, 37, 100000, 1};
 constexpr std::array<double, 4> kFronts = {0.03, 0.2, 0.5, 0.85};  // shares of all splits
 // Answers of one record cost a request each; after this many the order goes on with larger ones.
 constexpr uint64_t kSingleRecords = 2000;
@@ -110,7 +110,9 @@ Result<OrderResult> runOrder(RecordStore& store, const Leaves& leaves, const Exp
         result.batch == 1 && mesh->splitsApplied() >= kSingleRecords ? 5000 : result.batch;
     batch.clear();
     while (!order.empty() && batch.size() < wanted) batch.push_back(order.takeFirst());
-    if (auto done = refine(store, *mesh, batch); !done) return tl::unexpected(done.error());
+    const auto requestBits = refine(store, *mesh, batch);
+    if (!requestBits) return tl::unexpected(requestBits.error());
+    result.requestBits += *requestBits;
     for (const NodeIndex node : batch)
       for (const NodeIndex child : {mesh->leftChild(node), mesh->leftChild(node) + 1})
         if (!mesh->isLeaf(child)) order.add(child);

@@ -20,7 +20,8 @@ struct OrderResult {
   size_t batch = 0;            // records an answer, at most
   unsigned frontsChecked = 0;  // intermediate ones
   unsigned frontsWrong = 0;
-  uint64_t collapses = 0;  // splits undone and done again on the way
+  uint64_t requestBits = 0;  // of all requests: sets of IDs as bitstrings
+  uint64_t collapses = 0;    // splits undone and done again on the way
   bool finalExact = false;
   [[nodiscard]] bool exact() const { return frontsWrong == 0 && finalExact; }
 };
@@ -30,7 +31,7 @@ struct ExpectedMesh {
   std::vector<Triangle> triangles;
 };
 
-// Runs `orders` orders, the kinds of RefinementOrder in turn, with answers of 1, 37, 1,000 and
+// Runs `orders` orders, the kinds of RefinementOrder in turn, with answers of 1, 37, 2,000 and
 // 100,000 records; some collapse parts of the mesh on the way. Calls `report` behind each. An Error
 // if the pack cannot be decoded at all or its full mesh is not `expected`.
 [[nodiscard]] Result<std::vector<OrderResult>> verifyOrders(

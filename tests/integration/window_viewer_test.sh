@@ -8,7 +8,7 @@ mkdir "$work/packs"
 "$bin/meshfront-encode" "$work/mesh.obj" --output "$work/packs/mesh.pack" --name mesh >/dev/null
 start_server service "$bin/meshfront-serve" --packs "$work/packs" --listen 127.0.0.1:0
 
-xvfb-run -a -s "-screen 0 1280x720x24" bash -c '
+xvfb-run -a -s "-screen 0 1280x720x24 -noreset" bash -c '
   "$1" "$2" --size 400x300 --trace "$3/trace.csv" --screenshot "$3/window.png" \
     --json >"$3/window.json" &
   viewer=$!

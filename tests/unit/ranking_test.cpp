@@ -17,6 +17,17 @@ std::vector<VertexSlot> slotsOf(const std::vector<Candidate>& candidates) {
 const std::vector<Candidate> kFew = {{10, 0, 5, 3}, {11, 1, 900, 4}, {12, 2, 7, 3},
                                      {13, 3, 7, 3}, {14, 4, 1, 2},   {15, 5, 900, 5}};
 
+TEST(Ranking, TiesFallToTheFirstInPreorder) {
+  const NodeId first = NodeId::root(3).child(false);
+  const NodeId second = NodeId::root(3).child(true);
+  const Candidate a{7, 9, 5, 2, first};
+  const Candidate b{8, 1, 5, 2, second};
+  for (const RankOrder order : {RankOrder::significance, RankOrder::pixels}) {
+    EXPECT_TRUE(ranksBefore(order, a, b));
+    EXPECT_FALSE(ranksBefore(order, b, a));
+  }
+}
+
 TEST(Ranking, SignificancePutsTheLevelBeforeThePixels) {
   auto candidates = kFew;
   keepFirst(candidates, 100, RankOrder::significance);

@@ -17,7 +17,7 @@ std::vector<Candidate> candidates(const SelectivelyRefinedMesh& mesh,
     const NodeIndex node = mesh.nodeAt(slot);
     if (node == kNone || mesh.isLeaf(node) || mesh.isVirtual(node)) continue;
     if (node < excluded.size() && excluded[node] != 0) continue;
-    found.push_back({node, slot, pixels, static_cast<uint8_t>(mesh.level(node))});
+    found.push_back({node, slot, pixels, static_cast<uint8_t>(mesh.level(node)), mesh.id(node)});
   }
   return found;
 }
@@ -27,6 +27,7 @@ std::vector<Candidate> candidates(const SelectivelyRefinedMesh& mesh,
 bool ranksBefore(RankOrder order, const Candidate& a, const Candidate& b) {
   if (order == RankOrder::significance && a.level != b.level) return a.level < b.level;
   if (a.pixels != b.pixels) return a.pixels > b.pixels;
+  if (a.id != b.id) return a.id < b.id;
   return a.slot < b.slot;
 }
 

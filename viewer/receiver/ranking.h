@@ -24,9 +24,11 @@ struct Candidate {
   VertexSlot slot = kNone;
   uint32_t pixels = 0;
   uint8_t level = 0;
+  NodeId id{};
 };
 
-// Total order: ties fall to the lower slot, so that equal views ask for equal sets.
+// Total order. Ties fall to the node that comes first in preorder: equal views ask for equal sets,
+// and neighbours in the hierarchy, which cost the fewest bits, are asked for together.
 [[nodiscard]] bool ranksBefore(RankOrder order, const Candidate& a, const Candidate& b);
 
 // Active, neither leaf nor virtual, `excluded[node]` not set (nodes beyond the span are not).

@@ -90,7 +90,8 @@ void Receiver::requestBase() {
 }
 
 void Receiver::send(Flight& flight, bool bypassCaches) {
-  Result<FetchRequest> http = toFetch(url_, metadata_->revision, *flight.request);
+  size_t setOctets = 0;
+  Result<FetchRequest> http = toFetch(url_, metadata_->revision, *flight.request, &setOctets);
   if (!http) {
     // Front nodes are an antichain: only a damaged mesh can get here.
     degrade("the request cannot be written: " + http.error().message, true);
@@ -98,6 +99,8 @@ void Receiver::send(Flight& flight, bool bypassCaches) {
   }
   http->bypassCaches = bypassCaches;
   ++statistics_.requests;
+  statistics_.idsRequested += flight.nodes.size();
+  statistics_.setOctets += setOctets;
   flight.id = transport_.send(std::move(*http),
                               recordsInto(inbox_, flight.sequence, flight.request, tables_));
 }

@@ -75,6 +75,8 @@ struct ReceiverStatistics {
   uint64_t answers = 0;   // applied whole
   uint64_t records = 0;   // applied
   uint64_t malformed = 0;
+  uint64_t idsRequested = 0;                   // nodes named in requests
+  uint64_t setOctets = 0;                      // of their bitstrings, before base64url
   uint64_t requestBytesUp = 0;                 // of record requests alone: lines, headers, content
   uint64_t answerBytesDown = 0;                // of record answers alone, without headers
   Traffic traffic;                             // everything

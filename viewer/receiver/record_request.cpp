@@ -22,9 +22,10 @@ std::string expansionParameter(const Expansion& expansion) {
 }
 
 Result<FetchRequest> toFetch(const MeshUrl& url, std::string_view revision,
-                             const RecordRequest& request) {
+                             const RecordRequest& request, size_t* setOctets) {
   Result<std::vector<uint8_t>> bits = encodeTreeBitstring(request.nodes);
   if (!bits) return tl::unexpected(bits.error());
+  if (setOctets != nullptr) *setOctets = bits->size();
   const std::string parameter = expansionParameter(request.expansion);
   FetchRequest http;
   http.maxBodyBytes =

@@ -25,9 +25,11 @@ struct RecordRequest {
 // The URL's parameter, "" where the expansion adds nothing.
 [[nodiscard]] std::string expansionParameter(const Expansion& expansion);
 
-// GET while the URL stays within kMaxUrlOctets, else QUERY.
+// GET while the URL stays within kMaxUrlOctets, else QUERY. Tells the octets of the set of IDs, as
+// a bitstring, in `setOctets` if given.
 [[nodiscard]] Result<FetchRequest> toFetch(const MeshUrl& url, std::string_view revision,
-                                           const RecordRequest& request);
+                                           const RecordRequest& request,
+                                           size_t* setOctets = nullptr);
 
 // Untrusted answer.
 [[nodiscard]] Result<std::vector<RecordEntry>> parseRecords(std::span<const uint8_t> bytes,
