@@ -41,18 +41,11 @@ class Simplifier {
  public:
   Simplifier(std::span<const GridPosition> positions, uint32_t virtualCount,
              const SimplifyOptions& options)
-      : realCount_(static_cast<uint32_t>(positions.size())),
+      : positions_(positions),
+        realCount_(static_cast<uint32_t>(positions.size())),
+        vertexCount_(realCount_ + virtualCount),
         inputIndex_(spaceFillingOrder(positions)),
-        vertices_(positions.size() + virtualCount),
         chooser_(mesh_, vertices_, options.balance, result_.report) {
-    for (uint32_t v = 0; v < realCount_; ++v) {
-      for (size_t i = 0; i < 3; ++i) {
-        vertices_[v].position[i] = static_cast<float>(positions[inputIndex_[v]][i]);
-      }
-    }
-    for (uint32_t v = realCount_; v < vertices_.size(); ++v) {
-      vertices_[v].state = State::immovable;
-    }
     const double share = options.baseFraction > 0 ? std::min(options.baseFraction, 1.0) : 0;
     const double wanted = std::ceil(share * realCount_);
     result_.report.wantedVertices = std::max(kFewestVertices, static_cast<uint32_t>(wanted));
@@ -61,13 +54,14 @@ class Simplifier {
   Simplification run(std::span<const Triangle> triangles, size_t realTriangleCount,
                      const SimplifyProgress& progress) {
     {
-      std::vector<uint32_t> newIndex(vertices_.size());
+      std::vector<uint32_t> newIndex(vertexCount_);
       std::iota(newIndex.begin() + realCount_, newIndex.end(), realCount_);
       for (uint32_t v = 0; v < realCount_; ++v) newIndex[inputIndex_[v]] = v;
-      if (!mesh_.build(static_cast<uint32_t>(vertices_.size()), triangles, newIndex)) {
+      if (!mesh_.build(vertexCount_, triangles, newIndex)) {
         result_.report.why = StopReason::notClosed;
         return std::move(result_);
       }
+      placeVertices();
       addFaceQuadrics(triangles.first(std::min(realTriangleCount, triangles.size())), newIndex);
     }
     addBoundaryQuadrics();
@@ -77,6 +71,17 @@ class Simplifier {
   }
 
  private:
+  // After the mesh is built, whose scratch memory is the other large part.
+  void placeVertices() {
+    vertices_.resize(vertexCount_);
+    for (uint32_t v = 0; v < realCount_; ++v) {
+      for (size_t i = 0; i < 3; ++i) {
+        vertices_[v].position[i] = static_cast<float>(positions_[inputIndex_[v]][i]);
+      }
+    }
+    for (uint32_t v = realCount_; v < vertexCount_; ++v) vertices_[v].state = State::immovable;
+  }
+
   void addFaceQuadrics(std::span<const Triangle> triangles, std::span<const uint32_t> newIndex) {
     for (const Triangle& input : triangles) {
       const Triangle t = {newIndex[input[0]], newIndex[input[1]], newIndex[input[2]]};
@@ -223,7 +228,9 @@ class Simplifier {
     queue_.push({key, v});
   }
 
+  std::span<const GridPosition> positions_;
   uint32_t realCount_;
+  uint32_t vertexCount_;
   std::vector<uint32_t> inputIndex_;  // of the real vertices, which are renumbered
   std::vector<SimplifyVertex> vertices_;
   CollapsibleMesh mesh_;
