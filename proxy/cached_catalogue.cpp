@@ -63,7 +63,7 @@ std::shared_ptr<CachedStore> CachedCatalogue::remember(const std::string& key,
   // Two threads may have opened it: the first counts, so that its records are not split in two.
   auto [it, isNew] = stores_.try_emplace(key, Opened{std::move(store), 0});
   it->second.lastUse = ++uses_;
-  const std::shared_ptr<CachedStore> kept = it->second.store;
+  std::shared_ptr<CachedStore> kept = it->second.store;
   if (stores_.size() > kMaxStores) {
     const auto leastUsed = std::min_element(
         stores_.begin(), stores_.end(),

@@ -72,10 +72,13 @@ std::optional<ChildFacts> RecordCache::Reader::find(const NodeId& node, BitWrite
     shard_ = &shard;
     lock_ = std::shared_lock(shard.mutex);
   }
-  CachedRecord* record = shard.table.find(node);
-  if (record == nullptr) return std::nullopt;
-  if (!record->wasUsed())  // readers share the lock: the mark is set atomically
-    std::atomic_ref<uint32_t>(record->packed).fetch_or(1, std::memory_order_relaxed);
+  CachedRecord* found = shard.table.find(node);
+  if (found == nullptr) return std::nullopt;
+  // Readers share the lock and set the mark, so that they meet that word atomically alone.
+  const std::atomic_ref<uint32_t> packed(found->packed);
+  const CachedRecord copy{packed.load(std::memory_order_relaxed), found->bits};
+  const CachedRecord* record = &copy;
+  if (!record->wasUsed()) packed.fetch_or(1, std::memory_order_relaxed);
   if (out != nullptr) {
     const uint32_t length = record->length();
     if (record->isInline()) {

@@ -36,15 +36,11 @@ class GrowingMesh {
       const Edge edge{t[i], t[(i + 1) % 3]};
       used_.insert(keyOf(edge.from, edge.to));
       seen_[edge.from] = true;
-      if (isOpen({edge.to, edge.from})) {
-        remove(starting_[edge.to], edge.from);
-        remove(ending_[edge.from], edge.to);
-        --openCount_;
-      } else {
+      if (open_.erase(keyOf(edge.to, edge.from)) == 0) {
+        open_.insert(keyOf(edge.from, edge.to));
         starting_[edge.from].push_back(edge.to);
         ending_[edge.to].push_back(edge.from);
         gates_.push_back(edge);
-        ++openCount_;
       }
     }
     return true;
@@ -64,34 +60,33 @@ class GrowingMesh {
     seed = nextSeed_;
     return nextSeed_ < seen_.size();
   }
-  [[nodiscard]] uint32_t afterEnd(Edge gate) const {
-    return starting_[gate.to].empty() ? kAbsent : starting_[gate.to].back();
+  // Closed edges leave the lists when they are met: no vertex's degree makes this slow.
+  uint32_t afterEnd(Edge gate) {
+    auto& ends = starting_[gate.to];
+    while (!ends.empty() && !isOpen({gate.to, ends.back()})) ends.pop_back();
+    return ends.empty() ? kAbsent : ends.back();
   }
-  [[nodiscard]] uint32_t beforeStart(Edge gate) const {
-    return ending_[gate.from].empty() ? kAbsent : ending_[gate.from].back();
+  uint32_t beforeStart(Edge gate) {
+    auto& starts = ending_[gate.from];
+    while (!starts.empty() && !isOpen({starts.back(), gate.from})) starts.pop_back();
+    return starts.empty() ? kAbsent : starts.back();
   }
   [[nodiscard]] bool seen(uint32_t vertex) const { return seen_[vertex]; }
-  [[nodiscard]] bool closed() const { return openCount_ == 0; }
+  [[nodiscard]] bool closed() const { return open_.empty(); }
   [[nodiscard]] std::vector<Triangle> take() { return std::move(triangles_); }
 
  private:
-  [[nodiscard]] bool isOpen(Edge edge) const {
-    const auto& ends = starting_[edge.from];
-    return std::find(ends.begin(), ends.end(), edge.to) != ends.end();
-  }
-  static void remove(std::vector<uint32_t>& list, uint32_t value) {
-    list.erase(std::find(list.begin(), list.end(), value));
-  }
+  [[nodiscard]] bool isOpen(Edge edge) const { return open_.count(keyOf(edge.from, edge.to)) != 0; }
 
   std::vector<Triangle> triangles_;
   std::vector<bool> seen_;
-  std::vector<std::vector<uint32_t>> starting_;  // ends of the open edges from a vertex
-  std::vector<std::vector<uint32_t>> ending_;    // starts of the open edges to a vertex
+  std::vector<std::vector<uint32_t>> starting_;  // ends of edges from a vertex, newest last
+  std::vector<std::vector<uint32_t>> ending_;    // starts of edges to a vertex, likewise
+  std::unordered_set<uint64_t> open_;            // edges that lack their neighbour
   std::unordered_set<uint64_t> used_;            // directed edges
   std::vector<Edge> gates_;
   size_t nextGate_ = 0;
   uint32_t nextSeed_ = 0;
-  uint64_t openCount_ = 0;
 };
 
 }  // namespace

@@ -73,9 +73,9 @@ class CutDecoder {
 struct CutSymbols {
   enum class Kind : uint8_t { cyclic, linear, left, right };
   struct Symbol {
-    Kind kind;
-    bool leftFirst;
-    uint32_t runs;
+    Kind kind = Kind::cyclic;
+    bool leftFirst = false;
+    uint32_t runs = 0;
     RunPair pair;
   };
   std::vector<Symbol> symbols;  // in the order chosen; reused between records

@@ -22,9 +22,9 @@
 
 #include <algorithm>
 #include <bit>
-#include <compare>
 #include <cstdint>
 #include <span>
+#include <tuple>
 #include <vector>
 
 #include "shared/hierarchy/node_id.h"
@@ -42,7 +42,9 @@ struct FaceKey {
     return {uint64_t{creator.tree} + 1, creator.path,
             uint32_t{creator.depth} * 2 + (isRight ? 1U : 0U)};
   }
-  friend auto operator<=>(const FaceKey&, const FaceKey&) = default;
+  friend bool operator<(const FaceKey& a, const FaceKey& b) {
+    return std::tie(a.tree, a.path, a.depthSide) < std::tie(b.tree, b.path, b.depthSide);
+  }
 };
 
 struct RingCut {

@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <atomic>
 #include <charconv>
 #include <cstring>
 #include <optional>
@@ -36,7 +37,8 @@ struct Exchange {
   uint64_t contentSeen = 0;
   bool started = false;
   bool tooLarge = false;
-  std::optional<HttpResponse> response;  // set by a worker before it resumes the connection
+  std::optional<HttpResponse> response;  // set by a worker, which then sets `answered`
+  std::atomic<bool> answered = false;    // hands the response over to the connection's thread
 
   [[nodiscard]] HttpRequest request() const {
     return {method, target, ifNoneMatch, contentType, content, tooLarge};
@@ -119,7 +121,8 @@ struct HttpFront::Server {
 
   MHD_Result receive(MHD_Connection* connection, Exchange& exchange, const char* method,
                      size_t* contentSize, const char* content) {
-    if (exchange.response) return queue(connection, *std::exchange(exchange.response, {}));
+    if (exchange.answered.load(std::memory_order_acquire))
+      return queue(connection, *std::exchange(exchange.response, {}));
     if (!exchange.started) {
       exchange.started = true;
       exchange.method = method;
@@ -150,10 +153,12 @@ struct HttpFront::Server {
     MHD_suspend_connection(connection);
     const bool taken = workers->submit([this, connection, &exchange] {
       exchange.response = handler.answer(exchange.request());
+      exchange.answered.store(true, std::memory_order_release);
       MHD_resume_connection(connection);
     });
     if (!taken) {
       exchange.response = handler.overloaded(exchange.request());
+      exchange.answered.store(true, std::memory_order_release);
       MHD_resume_connection(connection);
     }
     return MHD_YES;
