@@ -145,16 +145,11 @@ Result<std::vector<Triangle>> readBaseConnectivity(BitReader& in, uint32_t verte
     if (!mesh.add({seed, second, third})) return damaged();
     Edge gate{};
     while (mesh.nextGate(gate)) {
-      uint32_t corner = 0;
-      if (!in.readBit()) {
-        corner = readTruncated(in, vertexCount);
-      } else if (!in.readBit()) {
-        corner = mesh.afterEnd(gate);
-      } else if (!in.readBit()) {
-        corner = mesh.beforeStart(gate);
-      } else {
-        corner = readTruncated(in, vertexCount);
-      }
+      unsigned rule = 0;
+      while (rule < 3 && in.readBit()) ++rule;
+      const uint32_t corner = rule == 1   ? mesh.afterEnd(gate)
+                              : rule == 2 ? mesh.beforeStart(gate)
+                                          : readTruncated(in, vertexCount);
       if (in.overrun() || corner >= vertexCount || !mesh.add({gate.to, gate.from, corner}))
         return damaged();
     }

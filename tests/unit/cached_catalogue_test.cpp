@@ -204,6 +204,7 @@ TEST_F(CachedCatalogueTest, SharesFetchesBetweenThreads) {
   });
   std::atomic<int> wrong{0};
   std::vector<std::thread> threads;
+  threads.reserve(kThreads);
   for (int t = 0; t < kThreads; ++t)
     threads.emplace_back([&] {
       ++started;

@@ -46,7 +46,7 @@ class MeshService {
 
  private:
   struct Place {
-    size_t chunk;
+    size_t chunk = 0;
     RecordEntry entry;
   };
   [[nodiscard]] FetchResponse records(const FetchRequest& request) const;
