@@ -19,8 +19,8 @@ bool readSubtree(BitReader& in, const CodeTables& tables, const NodeId& top, uns
                  const Descend& descend, uint64_t limit, std::vector<RecordEntry>& out) {
   struct Pending {
     NodeId id;
-    unsigned level;
-    unsigned generation;
+    unsigned level = 0;
+    unsigned generation = 0;
   };
   std::vector<Pending> stack{{top, level, 0}};
   while (!stack.empty() && out.size() < limit) {
