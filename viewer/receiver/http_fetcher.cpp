@@ -87,7 +87,9 @@ size_t onHeader(char* data, size_t, size_t count, void* user) {
 
 // curl's own counters mix headers and content; its debug stream tells them apart exactly.
 int onTraffic(CURL*, curl_infotype type, char*, size_t count, void* user) {
-  Traffic& traffic = static_cast<Slot*>(user)->job->traffic;
+  auto& slot = *static_cast<Slot*>(user);
+  if (!slot.job) return 0;  // a kept connection is being closed
+  Traffic& traffic = slot.job->traffic;
   if (type == CURLINFO_HEADER_OUT || type == CURLINFO_DATA_OUT) traffic.bytesUp += count;
   if (type == CURLINFO_HEADER_IN) traffic.headerBytesDown += count;
   if (type == CURLINFO_DATA_IN) traffic.bodyBytesDown += count;
@@ -125,15 +127,15 @@ std::chrono::milliseconds retryAfter(const FetchResponse& response) {
   return std::chrono::seconds(std::min(seconds, 3600U));
 }
 
-bool isLoopback(const std::string& url) {
-  const size_t scheme = url.find("://");
-  const std::string_view rest = std::string_view(url).substr(scheme + 3);
-  return rest.starts_with("127.") || rest.starts_with("localhost") || rest.starts_with("[::1]");
-}
-
 std::string hostOf(const std::string& url) {
   const size_t begin = url.find("://") + 3;
   return url.substr(begin, url.find('/', begin) - begin);
+}
+
+bool isLoopback(const std::string& url) {
+  const std::string host = hostOf(url);
+  return host.starts_with("127.") || host.starts_with("[::1]") || host == "localhost" ||
+         host.starts_with("localhost:");
 }
 
 void initializeCurl() {
