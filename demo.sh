@@ -27,7 +27,8 @@ step() { echo "== $*"; }
 start() {
   local name=$1
   shift
-  "$@" --listen 127.0.0.1:0 >"$out/$name.out" 2>"$out/$name.log" &
+  : >"$out/$name.out"  # there before the server's shell makes it
+  "$@" --listen 127.0.0.1:0 >>"$out/$name.out" 2>"$out/$name.log" &
   servers+=($!)
   for _ in {1..200}; do
     address=$(sed -n 's/^listening on //p' "$out/$name.out")
