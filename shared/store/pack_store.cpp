@@ -160,7 +160,7 @@ Result<RecordPlace> PackStore::locate(const NodeId& node, const Directory& direc
     }
   }
   while (true) {
-    const auto place = indexChunkOf(at, level, directory);
+    auto place = indexChunkOf(at, level, directory);
     if (!place || at.depth == node.depth) return place;
     const bool right = node.step(at.depth);
     if (place->children().isLeaf(right)) return noSuchNode();

@@ -21,7 +21,8 @@ fail() {
 start_server() {
   local name=$1
   shift
-  "$@" >"$work/$name.out" 2>"$work/$name.log" &
+  : >"$work/$name.out"  # there before the server's shell makes it
+  "$@" >>"$work/$name.out" 2>"$work/$name.log" &
   server=$!
   started+=("$server")
   for _ in $(seq 200); do

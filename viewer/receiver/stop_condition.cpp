@@ -46,7 +46,6 @@ Result<StopCondition> parseStopCondition(std::string_view text) {
   using Kind = StopCondition::Kind;
   if (text == "settled") return StopCondition{Kind::settled, 0, 0};
   if (text == "complete") return StopCondition{Kind::complete, 0, 0};
-  StopCondition condition;
   std::string_view rest = text;
   double number = 0;
   if (text.starts_with("records:")) {
