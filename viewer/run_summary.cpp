@@ -52,8 +52,9 @@ std::string toText(const RunSummary& summary) {
     text << "; " << *is.recordsWhenSettled << " when the view had settled";
   text << "\ntriangles  " << summary.triangles;
   text << "\nrequests   " << is.requests << " for records, " << is.traffic.attempts << " in all";
-  text << "\nbytes up   " << is.traffic.bytesUp
-       << " (sets of IDs: " << 8 * share(is.setOctets, is.idsRequested) << " bits an ID)";
+  text << "\nbytes up   " << is.traffic.bytesUp;
+  if (is.idsRequested > 0)
+    text << " (sets of IDs: " << 8 * share(is.setOctets, is.idsRequested) << " bits an ID)";
   text << "\nbytes down " << is.traffic.bytesDown() << " (" << is.answerBytesDown << " of records, "
        << is.traffic.headerBytesDown << " of headers)";
   if (summary.psnr) text << "\nPSNR       " << decibels(*summary.psnr);

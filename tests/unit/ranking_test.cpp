@@ -9,6 +9,7 @@ namespace {
 
 std::vector<VertexSlot> slotsOf(const std::vector<Candidate>& candidates) {
   std::vector<VertexSlot> slots;
+  slots.reserve(candidates.size());
   for (const Candidate& candidate : candidates) slots.push_back(candidate.slot);
   return slots;
 }
