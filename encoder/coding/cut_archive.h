@@ -1,8 +1,9 @@
-// Cut symbols of all splits, a few bytes each, between the pass that counts them and the one that
+// Cut decisions of all splits, two bytes each, between the pass that counts them and the one that
 // writes them.
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "shared/codec/cut_coding.h"
@@ -11,43 +12,27 @@ namespace meshfront {
 
 class CutArchive {
  public:
-  void append(const CutSymbols& cut) {
-    put(static_cast<uint32_t>(cut.symbols.size()));
-    for (const auto& s : cut.symbols) {
-      bytes_.push_back(
-          static_cast<uint8_t>(static_cast<unsigned>(s.kind) << 1 | (s.leftFirst ? 1U : 0U)));
-      put(s.runs);
-      put(s.pair.left);
-      put(s.pair.right);
-    }
+  void append(std::span<const CutDecision> cut) {
+    for (const auto& decision : cut)
+      words_.push_back(static_cast<uint16_t>(decision.context << 3 | (decision.backward ? 2U : 0U) |
+                                             (decision.bit ? 1U : 0U)));
+    // Every cut has a decision: a ring has two runs or more.
+    words_.back() |= kLast;
   }
-  // Reads the splits back in the order appended; `position` starts at 0.
-  void read(size_t& position, CutSymbols& out) const {
-    out.symbols.resize(get(position));
-    for (auto& s : out.symbols) {
-      const uint8_t head = bytes_[position++];
-      s.kind = static_cast<CutSymbols::Kind>(head >> 1);
-      s.leftFirst = (head & 1) != 0;
-      s.runs = get(position);
-      s.pair.left = get(position);
-      s.pair.right = get(position);
+  // Reads the cuts back in the order appended; `position` starts at 0.
+  void read(size_t& position, std::vector<CutDecision>& out) const {
+    out.clear();
+    for (;;) {
+      const uint16_t word = words_[position++];
+      out.push_back({static_cast<uint16_t>(word >> 3), (word & 1) != 0, (word & 2) != 0});
+      if ((word & kLast) != 0) return;
     }
   }
 
  private:
-  void put(uint32_t value) {
-    for (; value >= 128; value >>= 7) bytes_.push_back(static_cast<uint8_t>(value | 128));
-    bytes_.push_back(static_cast<uint8_t>(value));
-  }
-  [[nodiscard]] uint32_t get(size_t& position) const {
-    uint32_t value = 0;
-    for (unsigned shift = 0;; shift += 7) {
-      const uint8_t byte = bytes_[position++];
-      value |= static_cast<uint32_t>(byte & 127) << shift;
-      if (byte < 128) return value;
-    }
-  }
-  std::vector<uint8_t> bytes_;
+  static constexpr uint16_t kLast = 4;
+  static_assert(kCutContexts < 1U << 13);
+  std::vector<uint16_t> words_;
 };
 
 }  // namespace meshfront

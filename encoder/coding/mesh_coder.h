@@ -1,6 +1,8 @@
 // From a closed mesh and its vertex forest to the resources of the interface: base, chunks, index.
 //
-//   static rings -> cut symbols -> code tables -> records -> chunks
+//   split_fields, cut_regions -> code tables -> records -> chunks
+//
+// Peak memory: about 90 bytes a vertex, the input and the forest aside.
 #pragma once
 
 #include <cstdint>
@@ -22,10 +24,13 @@ struct FieldBits {
   uint64_t significance = 0;     // levels
   uint64_t positionClasses = 0;  // bit lengths of d_b, d_c and the residual
   uint64_t positionValues = 0;   // signs and mantissas
-  uint64_t cutCode = 0;          // used bits of the cut regions
-  uint64_t cutPadding = 0;       // unused ones
+  uint64_t colours = 0;
+  uint64_t normals = 0;
+  uint64_t cutRegions = 0;  // what is in them and what pads them up to a length of the header
+  uint64_t cutPadding = 0;  // the latter alone
   [[nodiscard]] uint64_t total() const {
-    return header + significance + positionClasses + positionValues + cutCode + cutPadding;
+    return header + significance + positionClasses + positionValues + colours + normals +
+           cutRegions;
   }
 };
 
@@ -43,6 +48,8 @@ struct CodingInput {
   uint32_t virtualCount = 0;
   std::span<const Triangle> triangles;  // closed
   unsigned quantizationBits = kDefaultQuantizationBits;
+  AttributeLayout layout{};
+  std::span<const VertexAttributes> attributes{};  // of real vertices; empty if the layout is
 };
 
 // Done so far and planned, in splits passed over; from the calling thread.

@@ -57,13 +57,13 @@ std::string toJson(const EncodingReport& report, bool withTimes) {
                   {"significance", b.significance},
                   {"positionClasses", b.positionClasses},
                   {"positionValues", b.positionValues},
-                  {"cutCode", b.cutCode},
-                  {"cutPadding", b.cutPadding},
+                  {"cutRegions", b.cutRegions},
+                  {"ofThosePadding", b.cutPadding},
                   {"total", b.total()},
                   {"tables", report.tableBits}};
   json["bitsPerSplit"] = {
-      {"cutCodeWithLength",
-       each(static_cast<double>(b.header + b.cutCode + b.cutPadding) - b.leafFlags, b.splits)},
+      {"cutRegionsWithLength",
+       each(static_cast<double>(b.header + b.cutRegions) - b.leafFlags, b.splits)},
       {"leafFlags", each(b.leafFlags, b.splits)},
       {"significance", each(static_cast<double>(b.significance), b.splits)},
       {"position", each(static_cast<double>(b.positionClasses + b.positionValues), b.splits)},
@@ -105,7 +105,7 @@ std::string describe(const EncodingReport& report) {
   out += fmt::format(
       "bits/split  cut code with length {:.2f}, leaf flags {:.2f}, significance {:.2f}, "
       "position {:.2f}, total {:.2f}\n",
-      each(static_cast<double>(b.header + b.cutCode + b.cutPadding) - b.leafFlags, b.splits),
+      each(static_cast<double>(b.header + b.cutRegions) - b.leafFlags, b.splits),
       each(b.leafFlags, b.splits), each(static_cast<double>(b.significance), b.splits),
       each(static_cast<double>(b.positionClasses + b.positionValues), b.splits),
       each(static_cast<double>(b.total()), b.splits));

@@ -75,33 +75,4 @@ class BitReader {
   bool overrun_ = false;
 };
 
-// Reads bits backwards from the end of a region: bit end-1 first. Past the front: zeros, overrun().
-class BackwardBitReader {
- public:
-  BackwardBitReader() = default;
-  BackwardBitReader(std::span<const uint8_t> bytes, uint64_t begin, uint64_t end)
-      : bytes_(bytes), begin_(begin), position_(end) {}
-  bool readBit() {
-    if (position_ <= begin_ || position_ > bytes_.size() * 8) {
-      overrun_ = true;
-      return false;
-    }
-    --position_;
-    return (bytes_[position_ >> 3] >> (7 - (position_ & 7)) & 1) != 0;
-  }
-  uint64_t read(unsigned count) {
-    uint64_t value = 0;
-    while (count-- > 0) value = value << 1 | (readBit() ? 1 : 0);
-    return value;
-  }
-  [[nodiscard]] uint64_t position() const { return position_; }
-  [[nodiscard]] bool overrun() const { return overrun_; }
-
- private:
-  std::span<const uint8_t> bytes_;
-  uint64_t begin_ = 0;
-  uint64_t position_ = 0;
-  bool overrun_ = false;
-};
-
 }  // namespace meshfront

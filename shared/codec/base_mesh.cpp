@@ -1,9 +1,10 @@
 // Layout, bits most significant first:
-//   magic "MFB" and version 1 (32), quantisation bits (5), splits (Exp-Golomb 16),
+//   magic "MFB" and version 2 (32), quantisation bits (5), splits (Exp-Golomb 16),
 //   roots, virtual trees (Exp-Golomb 8, 2), code tables (code_tables.cpp), whether any root is a
 //   leaf (1)
 //   roots in order: each coordinate's difference from the last root's, zigzag, Exp-Golomb of the
-//   order given by 5 bits; leaf flag where any is one; unless a leaf its level in maxLevel's bits
+//   order given by 5 bits; its colour and normal, where the mesh has them, likewise in the orders
+//   3 and bits - 4; leaf flag where any is one; unless a leaf its level in maxLevel's bits
 //   triangles (base_connectivity.h)
 //   zero bits up to a byte, CRC-32C
 #include "shared/codec/base_mesh.h"
@@ -17,7 +18,7 @@
 namespace meshfront {
 namespace {
 
-constexpr uint64_t kMagic = 0x4D464201;
+constexpr uint64_t kMagic = 0x4D464202;
 constexpr unsigned kMagicBits = 32;
 constexpr unsigned kSplitOrder = 16;
 constexpr unsigned kRootOrder = 8;
@@ -29,6 +30,40 @@ uint64_t zigzag(int64_t v) {
 }
 int64_t unzigzag(uint64_t v) {
   return (v & 1) != 0 ? -static_cast<int64_t>(v / 2) - 1 : static_cast<int64_t>(v / 2);
+}
+
+constexpr unsigned kColourOrder = 3;
+
+unsigned normalOrder(const AttributeLayout& layout) {
+  return layout.normalBits - kMinNormalBits;
+}
+
+void writeRootAttributes(BitWriter& out, const VertexAttributes& root, const VertexAttributes& last,
+                         const AttributeLayout& layout) {
+  if (layout.colours)
+    for (size_t i = 0; i < 4; ++i)
+      writeExpGolomb(out, zigzag(int64_t{root.colour[i]} - last.colour[i]), kColourOrder);
+  if (layout.normalBits != 0)
+    for (size_t i = 0; i < 2; ++i)
+      writeExpGolomb(out, zigzag(int64_t{root.normal[i]} - last.normal[i]), normalOrder(layout));
+}
+
+bool readRootAttributes(BitReader& in, VertexAttributes& root, const VertexAttributes& last,
+                        const AttributeLayout& layout) {
+  const auto within = [&](int64_t value, int64_t limit) { return value >= 0 && value <= limit; };
+  if (layout.colours)
+    for (size_t i = 0; i < 4; ++i) {
+      const int64_t value = last.colour[i] + unzigzag(readExpGolomb(in, kColourOrder));
+      if (!within(value, 255)) return false;
+      root.colour[i] = static_cast<uint8_t>(value);
+    }
+  if (layout.normalBits != 0)
+    for (size_t i = 0; i < 2; ++i) {
+      const int64_t value = last.normal[i] + unzigzag(readExpGolomb(in, normalOrder(layout)));
+      if (!within(value, (int64_t{1} << layout.normalBits) - 1)) return false;
+      root.normal[i] = static_cast<uint16_t>(value);
+    }
+  return true;
 }
 
 // The Exp-Golomb order that codes the coordinates in the fewest bits.
@@ -71,10 +106,13 @@ std::vector<uint8_t> encodeBaseMesh(const BaseMesh& base) {
   out.write(order, kOrderBits);
   const auto levelBits = static_cast<unsigned>(std::bit_width(base.tables.maxLevel));
   GridPosition last{};
+  VertexAttributes lastAttributes;
   for (const auto& root : base.roots) {
     for (size_t i = 0; i < 3; ++i)
       writeExpGolomb(out, zigzag(int64_t{root.position[i]} - last[i]), order);
     last = root.position;
+    writeRootAttributes(out, root.attributes, lastAttributes, base.tables.attributes.layout);
+    lastAttributes = root.attributes;
     if (anyLeaf) out.writeBit(root.isLeaf);
     if (!root.isLeaf) out.write(root.level, levelBits);
   }
@@ -109,6 +147,7 @@ Result<BaseMesh> decodeBaseMesh(std::span<const uint8_t> bytes) {
   const auto levelBits = static_cast<unsigned>(std::bit_width(base.tables.maxLevel));
   const int64_t limit = int64_t{1} << base.quantizationBits;
   GridPosition last{};
+  VertexAttributes lastAttributes;
   base.roots.reserve(roots);
   for (uint64_t r = 0; r < roots; ++r) {
     BaseMesh::Root root;
@@ -118,6 +157,9 @@ Result<BaseMesh> decodeBaseMesh(std::span<const uint8_t> bytes) {
       root.position[i] = static_cast<int32_t>(value);
     }
     last = root.position;
+    if (!readRootAttributes(in, root.attributes, lastAttributes, base.tables.attributes.layout))
+      return fail("base mesh: a colour or normal out of range");
+    lastAttributes = root.attributes;
     root.isLeaf = anyLeaf && in.readBit();
     if (!root.isLeaf) root.level = static_cast<uint8_t>(in.read(levelBits));
     if (root.level > base.tables.maxLevel) return fail("base mesh: a level beyond the finest");

@@ -18,6 +18,7 @@ struct BaseMesh {
     GridPosition position{};
     bool isLeaf = false;  // then it has no record
     uint8_t level = 0;    // significance, 0 for a leaf
+    VertexAttributes attributes;
   };
   unsigned quantizationBits = kDefaultQuantizationBits;
   uint64_t splitCount = 0;          // records of the whole mesh

@@ -11,7 +11,7 @@
 namespace meshfront {
 namespace {
 
-constexpr uint64_t kChunkMagic = 0x4D464301;  // "MFC", version 1
+constexpr uint64_t kChunkMagic = 0x4D464302;  // "MFC", version 2
 constexpr uint64_t kIndexMagic = 0x4D464901;  // "MFI", version 1
 constexpr unsigned kMagicBits = 32;
 constexpr unsigned kBandBits = 5;

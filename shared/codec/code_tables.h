@@ -1,4 +1,4 @@
-// The Huffman codes of one mesh. Trained by the encoder, carried in the base resource.
+// The codes of one mesh. Trained by the encoder, carried in the base resource.
 #pragma once
 
 #include <array>
@@ -8,6 +8,9 @@
 #include "shared/bits/bit_reader.h"
 #include "shared/bits/bit_writer.h"
 #include "shared/bits/huffman.h"
+#include "shared/bits/two_ended_region.h"
+#include "shared/codec/attribute_coding.h"
+#include "shared/codec/cut_contexts.h"
 #include "shared/result.h"
 
 namespace meshfront {
@@ -17,9 +20,17 @@ inline constexpr unsigned kLevelCount = kMaxLevel + 1;
 
 // Codes differ by how far a node's level is from the finest one: 0, 1, 2, 3 or more.
 inline constexpr unsigned kLevelContexts = 4;
+static_assert(kLevelContexts == kAttributeLevelContexts);
 inline constexpr unsigned kMergedClasses = 2;
 inline constexpr unsigned kResidualContexts = 32 / kMergedClasses * kLevelContexts;
-inline constexpr unsigned kMaxRunsCoded = 6;  // more cyclic runs than that: plain bits
+
+// Of a decision of the cut code: the chance in 64 that it is 0, by context (cut_contexts.h).
+using CutChances = std::array<uint8_t, kCutContexts + 1>;
+[[nodiscard]] inline CutChances evenCutChances() {
+  CutChances chances{};
+  chances.fill(kEvenChance);
+  return chances;
+}
 
 struct CodeTables {
   unsigned maxLevel = 0;      // finest significance level of any node, <= kMaxLevel
@@ -30,11 +41,11 @@ struct CodeTables {
   std::array<HuffmanCode, kLevelContexts> header;  // symbols: (u, t, class) numbered in that order
   // Level of a child - own level: of the only child that is no leaf, or of both jointly.
   std::array<HuffmanCode, kLevelContexts> levels;
-  std::array<HuffmanCode, kLevelContexts> levelPairs;           // u's * kLevelCount + t's
-  std::array<HuffmanCode, kLevelContexts> classes;              // class b * valueClasses + class c
-  std::array<HuffmanCode, kResidualContexts> residual;          // class of the residual of d_a
-  std::array<HuffmanCode, kMaxRunsCoded + 1> cyclicRuns;        // [R]: run of l * R + run of r
-  std::array<HuffmanCode, 2 * (kMaxRunsCoded + 1)> linearRuns;  // see cut_coding.h
+  std::array<HuffmanCode, kLevelContexts> levelPairs;   // u's * kLevelCount + t's
+  std::array<HuffmanCode, kLevelContexts> classes;      // class b * valueClasses + class c
+  std::array<HuffmanCode, kResidualContexts> residual;  // class of the residual of d_a
+  CutChances cutChances = evenCutChances();             // 1 .. 63 each
+  AttributeTables attributes;
 
   [[nodiscard]] unsigned levelContext(unsigned level) const {
     const unsigned distance = level > maxLevel ? 0 : maxLevel - level;

@@ -1,41 +1,8 @@
 #include "shared/codec/record.h"
 
 #include <algorithm>
-#include <bit>
-#include <cstdlib>
 
 namespace meshfront {
-namespace {
-
-// Bits behind the sign that a class leaves open.
-unsigned openBits(unsigned valueClass) {
-  return valueClass < 4 ? 0 : valueClass / 2 - 1;
-}
-
-int32_t readValue(BitReader& in, unsigned valueClass) {
-  if (valueClass == 0) return 0;
-  const unsigned open = openBits(valueClass);
-  const uint32_t lead = valueClass < 2 ? valueClass : 2U | (valueClass & 1U);
-  const bool negative = in.readBit();
-  const auto magnitude = static_cast<int32_t>(lead << open | static_cast<uint32_t>(in.read(open)));
-  return negative ? -magnitude : magnitude;
-}
-
-void writeValue(BitWriter& out, int32_t value) {
-  if (value == 0) return;
-  out.writeBit(value < 0);
-  out.write(static_cast<uint32_t>(std::abs(value)), openBits(valueClassOf(value)));
-}
-
-}  // namespace
-
-unsigned valueClassOf(int32_t value) {
-  const auto magnitude = static_cast<uint32_t>(std::abs(value));
-  if (magnitude < 2) return magnitude;
-  const auto length = static_cast<unsigned>(std::bit_width(magnitude));
-  return 2 * (length - 1) + (magnitude >> (length - 2) & 1);
-}
-
 unsigned leafFlagsOf(const Record& record) {
   return (record.leftIsLeaf ? 2U : 0U) | (record.rightIsLeaf ? 1U : 0U);
 }
@@ -46,10 +13,6 @@ uint32_t levelSymbol(const Record& record, unsigned level) {
 
 uint32_t levelPairSymbol(const Record& record, unsigned level) {
   return (record.leftLevel - level) * kLevelCount + record.rightLevel - level;
-}
-
-unsigned valueBits(int32_t value) {
-  return value == 0 ? 0 : 1 + openBits(valueClassOf(value));
 }
 
 Record readRecord(BitReader& in, const CodeTables& tables, unsigned level) {
@@ -85,6 +48,8 @@ Record readRecord(BitReader& in, const CodeTables& tables, unsigned level) {
   record.deltaB = readValue(in, classB);
   record.deltaC = readValue(in, classC);
   record.residualA = readValue(in, classA);
+  if (tables.attributes.layout.any())
+    record.attributes = readAttributes(in, tables.attributes, context);
 
   const auto& lengths = tables.cutLengths[leafFlags];
   if (header >= lengths.size()) {
@@ -116,6 +81,8 @@ void writeRecordHead(BitWriter& out, const Record& record, unsigned cutClass,
   writeValue(out, record.deltaB);
   writeValue(out, record.deltaC);
   writeValue(out, record.residualA);
+  if (tables.attributes.layout.any())
+    writeAttributes(out, record.attributes, tables.attributes, context);
 }
 
 }  // namespace meshfront

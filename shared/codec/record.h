@@ -4,9 +4,11 @@
 // node's own level (from its parent's record, the base mesh, or the chunk's band):
 //   header   Huffman(by level): leaf flag of u, leaf flag of t, class of the cut region's length
 //   levels   Huffman(by level): level of the child that is no leaf - own level, or of both jointly
-//   classes  Huffman(by level): classes (valueClassOf) of d_b and d_c, jointly; then Huffman(by the
+//   classes  Huffman(by level): classes (value_class.h) of d_b and d_c, jointly; then Huffman(by
+//   the
 //            larger of them and the level): class of the residual of d_a
 //   values   for b, c, a, unless zero: sign bit (1 = negative), then the bits the class leaves open
+//   further  colour and normal, where the mesh has them (attribute_coding.h)
 //   cut      the cut region (ring_cut.h), its length given by the header's class
 // a is the axis of the largest component of the node's predicted normal, b and c the following axes
 // cyclically (position_prediction.h); parsing needs neither.
@@ -16,7 +18,9 @@
 
 #include "shared/bits/bit_reader.h"
 #include "shared/bits/bit_writer.h"
+#include "shared/codec/attribute_coding.h"
 #include "shared/codec/code_tables.h"
+#include "shared/codec/value_class.h"
 
 namespace meshfront {
 
@@ -28,6 +32,7 @@ struct Record {
   int32_t deltaB = 0;  // grid steps
   int32_t deltaC = 0;
   int32_t residualA = 0;
+  AttributeDelta attributes;
   uint32_t cutBegin = 0;  // bits from the record's first bit
   uint32_t cutEnd = 0;    // == the record's length in bits
 };
@@ -45,10 +50,4 @@ void writeRecordHead(BitWriter& out, const Record& record, unsigned cutClass,
 [[nodiscard]] unsigned leafFlagsOf(const Record& record);
 [[nodiscard]] uint32_t levelSymbol(const Record& record, unsigned level);
 [[nodiscard]] uint32_t levelPairSymbol(const Record& record, unsigned level);
-// A value's class: its magnitude's bit length and second-highest bit. 0 for 0, 1 for 1, 2 for 2,
-// 3 for 3, 4 for 4 and 5, 5 for 6 and 7, 6 for 8 to 11, ... (of magnitudes).
-[[nodiscard]] unsigned valueClassOf(int32_t value);
-// The bits that code it besides its class: sign and open low bits.
-[[nodiscard]] unsigned valueBits(int32_t value);
-
 }  // namespace meshfront

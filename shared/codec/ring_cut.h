@@ -11,13 +11,14 @@
 //    in different trees). The gaps that part earliest cut the ring into R >= 2 cyclic runs,
 //    numbered from the one behind the smallest such gap in the total order of faces (FaceKey).
 // 2. One symbol given R: the runs of l and of r; where they are the same one, also which comes
-// first.
+//    first.
 // 3. While l and r share a run of several entries: the gaps in it that part earliest cut it into R
 //    sub-runs; one symbol given R and the order: the sub-runs of l and of r.
-// 4. Then l alone: while its run has several entries, the number of its sub-run in a truncated
-//    binary code, read forward. The same for r, read backward from the end of the region.
+// 4. Then l alone: while its run has several entries, is it the first of the sub-runs, the next
+//    one, ..., from t's side on? Read forward. The same for r, read backward from the region's end.
 //
-// Region: [shared symbols][l forward][padding][r backward]. Encoder and decoder are one template.
+// All choices are binary decisions; each has a context (cut_contexts.h) that tells from the places
+// of the runs' nodes (cut_frame.h) what is likely. Encoder and decoder are one template.
 #pragma once
 
 #include <algorithm>
@@ -27,6 +28,8 @@
 #include <tuple>
 #include <vector>
 
+#include "shared/codec/cut_contexts.h"
+#include "shared/codec/cut_frame.h"
 #include "shared/hierarchy/node_id.h"
 
 namespace meshfront {
@@ -59,27 +62,47 @@ struct RingCut {
   return std::countl_zero(a.path ^ b.path);
 }
 
-struct RunPair {
-  uint32_t left = 0;
-  uint32_t right = 0;
-};
-
 // Working space of the walk, kept between calls so that it allocates nothing.
 struct RingWalkSpace {
   std::vector<int> parting;      // [i]: between entries i and i + 1 of the rotated ring
   std::vector<uint32_t> starts;  // of runs
 };
 
+// One of `count` symbols as decisions, the high bit first; bits that `count` settles are not coded.
+// Node 1 .. of the decision tree have the contexts `first` + 1 ...
+template <typename Coder>
+uint32_t codeSymbol(Coder& coder, unsigned first, uint32_t count, uint32_t chosen) {
+  uint32_t symbol = 0;
+  uint32_t node = 1;
+  for (auto i = static_cast<unsigned>(std::bit_width(count - 1)); i-- > 0;) {
+    const bool settled = uint64_t{2 * symbol + 1} << i >= count;
+    const bool bit = !settled && coder.decide(first + node, (chosen >> i & 1) != 0);
+    symbol = 2 * symbol + (bit ? 1 : 0);
+    node = 2 * node + (bit ? 1 : 0);
+  }
+  return symbol;
+}
+// One of `count` equally likely symbols.
+template <typename Coder>
+uint32_t codeEven(Coder& coder, uint32_t count, uint32_t chosen) {
+  uint32_t symbol = 0;
+  for (auto i = static_cast<unsigned>(std::bit_width(count - 1)); i-- > 0;) {
+    const bool settled = uint64_t{2 * symbol + 1} << i >= count;
+    const bool bit = !settled && coder.decide(kEvenContext, (chosen >> i & 1) != 0);
+    symbol = 2 * symbol + (bit ? 1 : 0);
+  }
+  return symbol;
+}
+
 // Walks the ring. `entries`: at least two, cyclically adjacent ones different, none an ancestor of
-// another. `gapKey(i)` gives the FaceKey of gap i. `Coder` chooses or reads:
-//   RunPair cyclicPair(runs, chosen, bool& leftFirst), leftFirst told only where both are one run;
-//   RunPair linearPair(runs, chosen, leftFirst);
-//   uint32_t leftRun(runs, chosen), rightRun(runs, chosen).
-// An encoder is given `target` (entries) and returns `chosen`; a decoder ignores both. Choices must
-// be below `runs`, and in linearPair in the order that leftFirst says.
-template <typename GapKey, typename Coder>
-RingCut walkRing(std::span<const NodeId> entries, const GapKey& gapKey, Coder& coder,
-                 RingCut target, RingWalkSpace& space) {
+// another. `gapKey(i)` gives the FaceKey of gap i; `positionOf(i, depth)` the position of entry i's
+// ancestor-or-self at that depth, nothing for a virtual vertex (optional<GridPosition>).
+// `Coder` codes decisions: bool decide(context, chosen) forward, bool decideBackward(context,
+// chosen). An encoder is given `target` (entries) and returns `chosen`; a decoder ignores both.
+template <typename GapKey, typename PositionOf, typename Coder>
+RingCut walkRing(std::span<const NodeId> entries, const GapKey& gapKey,
+                 const PositionOf& positionOf, const CutFrame& frame, Coder& coder, RingCut target,
+                 RingWalkSpace& space) {
   const auto size = static_cast<uint32_t>(entries.size());
   auto& parting = space.parting;
   auto& starts = space.starts;
@@ -125,10 +148,10 @@ RingCut walkRing(std::span<const NodeId> entries, const GapKey& gapKey, Coder& c
       if (parting[i] == depth) starts.push_back(i + 1);
     return static_cast<uint32_t>(starts.size());
   };
-  const auto cutEarliest = [&](Run run) {
+  const auto earliestIn = [&](Run run) {
     int depth = parting[run.begin];
     for (uint32_t i = run.begin + 1; i + 1 < run.end; ++i) depth = std::min(depth, parting[i]);
-    return cut(run, depth);
+    return depth;
   };
   const auto holder = [&](uint32_t position) {
     const auto above = std::upper_bound(starts.begin(), starts.end(), position);
@@ -138,29 +161,83 @@ RingCut walkRing(std::span<const NodeId> entries, const GapKey& gapKey, Coder& c
     const bool last = number + 1 == starts.size();
     return Run{starts[number], last ? whole.end : starts[number + 1]};
   };
+  // The place of the node that labels a sub-run.
+  const auto placeOf = [&](uint32_t number, int depth) {
+    return frame.place(positionOf(toEntry(starts[number]), static_cast<unsigned>(depth + 1)));
+  };
+  const auto pairPlaces = [&](int depth) {
+    return frame.pairPlaces(placeOf(0, depth), placeOf(1, depth));
+  };
 
   Run whole{0, size};
   uint32_t runs = cut(whole, earliest);
+  uint32_t leftRun = holder(targetLeft);
+  uint32_t rightRun = holder(targetRight);
   bool leftFirst = targetLeft < targetRight;
-  RunPair pair =
-      coder.cyclicPair(runs, RunPair{holder(targetLeft), holder(targetRight)}, leftFirst);
-  Run left = runAt(whole, pair.left);
-  Run right = runAt(whole, pair.right);
+  if (runs <= kMaxRunsCoded) {
+    const bool rightFirst = leftRun == rightRun && !leftFirst;
+    const uint32_t symbol = codeSymbol(
+        coder, cyclicContexts(runs, runs == 2 ? pairPlaces(earliest) : 0), runs * runs + runs,
+        rightFirst ? runs * runs + leftRun : leftRun * runs + rightRun);
+    const bool pair = symbol < runs * runs;
+    leftRun = pair ? symbol / runs : symbol - runs * runs;
+    rightRun = pair ? symbol % runs : symbol - runs * runs;
+    leftFirst = pair;
+  } else {
+    leftRun = codeEven(coder, runs, leftRun);
+    rightRun = codeEven(coder, runs, rightRun);
+    leftFirst = leftRun != rightRun || coder.decide(kEvenContext, leftFirst);
+  }
+  Run left = runAt(whole, leftRun);
+  Run right = runAt(whole, rightRun);
   while (left.begin == right.begin && !left.single()) {
     whole = left;
-    runs = cutEarliest(whole);
-    pair = coder.linearPair(runs, RunPair{holder(targetLeft), holder(targetRight)}, leftFirst);
-    left = runAt(whole, pair.left);
-    right = runAt(whole, pair.right);
+    const int depth = earliestIn(whole);
+    runs = cut(whole, depth);
+    leftRun = holder(targetLeft);
+    rightRun = holder(targetRight);
+    uint32_t first = leftFirst ? leftRun : rightRun;
+    uint32_t second = leftFirst ? rightRun : leftRun;
+    if (runs <= kMaxRunsCoded) {
+      // The pairs (0, 0), (0, 1), ..., (1, 1), ...
+      const uint32_t symbol =
+          codeSymbol(coder, linearContexts(runs, leftFirst, runs == 2 ? pairPlaces(depth) : 0),
+                     runs * (runs + 1) / 2, first * (2 * runs - first + 1) / 2 + second - first);
+      uint32_t rest = symbol;
+      for (first = 0; rest >= runs - first; ++first) rest -= runs - first;
+      second = first + rest;
+    } else {
+      first = codeEven(coder, runs, first);
+      second = first + codeEven(coder, runs - first, second - first);
+    }
+    left = runAt(whole, leftFirst ? first : second);
+    right = runAt(whole, leftFirst ? second : first);
   }
   if (left.begin != right.begin) {
+    // t's faces lie clockwise of l and counter-clockwise of r.
     while (!left.single()) {
-      runs = cutEarliest(left);
-      left = runAt(left, coder.leftRun(runs, holder(targetLeft)));
+      const int depth = earliestIn(left);
+      const uint32_t last = cut(left, depth) - 1;
+      const uint32_t wanted = holder(targetLeft);
+      uint32_t at = 0;
+      for (auto near = placeOf(0, depth); at < last; ++at) {
+        const auto far = placeOf(at + 1, depth);
+        if (!coder.decide(stepContext(frame.stepPlaces(near, far, false)), wanted != at)) break;
+        near = far;
+      }
+      left = runAt(left, at);
     }
     while (!right.single()) {
-      runs = cutEarliest(right);
-      right = runAt(right, coder.rightRun(runs, holder(targetRight)));
+      const int depth = earliestIn(right);
+      uint32_t at = cut(right, depth) - 1;
+      const uint32_t wanted = holder(targetRight);
+      for (auto near = placeOf(at, depth); at > 0; --at) {
+        const auto far = placeOf(at - 1, depth);
+        if (!coder.decideBackward(stepContext(frame.stepPlaces(near, far, true)), wanted != at))
+          break;
+        near = far;
+      }
+      right = runAt(right, at);
     }
   }
   return {toEntry(left.begin), toEntry(right.begin), leftFirst};

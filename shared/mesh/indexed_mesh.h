@@ -15,8 +15,8 @@ struct IndexedMesh {
   std::vector<std::array<double, 3>> positions;  // finite
   std::vector<Triangle> triangles;               // every index < positions.size()
   // Either empty or one a position.
-  std::vector<Colour> colours;
-  std::vector<std::array<float, 3>> normals;  // of any length, finite; 0 where there is none
+  std::vector<Colour> colours{};
+  std::vector<std::array<float, 3>> normals{};  // of any length, finite; 0 where there is none
 };
 
 }  // namespace meshfront

@@ -23,7 +23,10 @@ Result<SelectivelyRefinedMesh> SelectivelyRefinedMesh::fromBase(BaseMesh base) {
     node.slot = tree;
     node.isLeaf = isVirtual || base.roots[tree].isLeaf;
     node.level = isVirtual ? 0 : base.roots[tree].level;
-    if (!isVirtual) node.normal = normals[tree];
+    if (!isVirtual) {
+      node.normal = normals[tree];
+      node.position = base.roots[tree].position;
+    }
     mesh.nodes_.push_back(node);
     mesh.nodeAt_.push_back(tree);
   }
@@ -100,7 +103,7 @@ Result<void> SelectivelyRefinedMesh::apply(NodeIndex index, std::span<const uint
   delta[(a + 1) % 3] = record.deltaB;
   delta[(a + 2) % 3] = record.deltaC;
   delta[a] = predictedAlong(node.normal, a, record.deltaB, record.deltaC) + record.residualA;
-  GridPosition position = positions_[node.slot];
+  GridPosition position = node.position;
   const int32_t limit = static_cast<int32_t>(1U << base_.quantizationBits);
   for (size_t i = 0; i < 3; ++i) {
     position[i] += delta[i];
@@ -111,10 +114,15 @@ Result<void> SelectivelyRefinedMesh::apply(NodeIndex index, std::span<const uint
   entries_.clear();
   for (const HalfEdge h : ring_) entries_.push_back(ids_[nodeAt_[edges_.destination(h)]]);
   CutDecoder coder(base_.tables, bytes, bitOffset + record.cutBegin, bitOffset + record.cutEnd);
+  const auto positionOf = [&](uint32_t entry, unsigned depth) -> std::optional<GridPosition> {
+    NodeIndex at = nodeAt_[edges_.destination(ring_[entry])];
+    if (isVirtual(at)) return std::nullopt;
+    for (unsigned steps = entries_[entry].depth - depth; steps > 0; --steps) at = nodes_[at].parent;
+    return nodes_[at].position;
+  };
   const RingCut cut = walkRing(
-      std::span<const NodeId>(entries_), [&](uint32_t gap) { return keyOf(ring_[gap] / 3); }, coder,
-      RingCut{}, space_);
-  if (!coder.sound()) return fail("split: a damaged cut code");
+      std::span<const NodeId>(entries_), [&](uint32_t gap) { return keyOf(ring_[gap] / 3); },
+      positionOf, CutFrame(node.position, delta, node.normal), coder, RingCut{}, space_);
 
   // From here on nothing fails.
   if (node.leftChild == kNone) {
@@ -126,6 +134,7 @@ Result<void> SelectivelyRefinedMesh::apply(NodeIndex index, std::span<const uint
       child.isLeaf = right ? record.rightIsLeaf : record.leftIsLeaf;
       child.level = right ? record.rightLevel : record.leftLevel;
       child.normal = normal;
+      child.position = right ? position : node.position;
       nodes_.push_back(child);
       ids_.push_back(id.child(right));
     }

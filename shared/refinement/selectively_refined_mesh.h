@@ -100,6 +100,7 @@ class SelectivelyRefinedMesh {
     uint32_t recordLength = 0;
     bool hasRecord = false;
     PredictedNormal normal{0, 0, kNormalLength};
+    GridPosition position{};
     uint8_t level = 0;
     bool isLeaf = false;
   };

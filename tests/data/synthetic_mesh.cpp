@@ -41,12 +41,6 @@ CodeTables makeTables(unsigned quantizationBits) {
   const size_t joint = size_t{tables.valueClasses} * tables.valueClasses;
   for (auto& code : tables.classes) code = evenCode(joint, size_t{tables.valueClasses} * 6);
   for (auto& code : tables.residual) code = evenCode(tables.residualClasses(), 8);
-  for (unsigned runs = 2; runs <= kMaxRunsCoded; ++runs) {
-    const size_t pairs = size_t{runs} * runs;
-    tables.cyclicRuns[runs] = evenCode(pairs + runs, pairs + runs);
-    tables.linearRuns[2 * runs] = evenCode(pairs, pairs);
-    tables.linearRuns[2 * runs + 1] = evenCode(pairs, pairs);
-  }
   return tables;
 }
 

@@ -14,254 +14,11 @@ import random
 import sys
 import urllib.request
 
-LEVELS = 32
-RUNS_CODED = 6
+from cut_code import Frame, find_cut
+from wire_bits import Damaged
+from wire_records import Base, read_chunk
+
 NORMAL_BITS = 14
-
-
-class Damaged(Exception):
-    pass
-
-
-# --- bits and numbers ------------------------------------------------------------------------------
-
-
-class Bits:
-    """Reads bits forward from a text of 0 and 1."""
-
-    def __init__(self, digits, at=0):
-        self.digits = digits
-        self.at = at
-
-    def u(self, count):
-        if self.at + count > len(self.digits):
-            raise Damaged("cut short")
-        value = int(self.digits[self.at:self.at + count] or "0", 2)
-        self.at += count
-        return value
-
-    def eg(self, order):
-        zeros = 0
-        while self.u(1) == 0:
-            zeros += 1
-            if zeros > 40:
-                raise Damaged("a number beyond all limits")
-        rest = zeros + order
-        return (1 << rest) + self.u(rest) - (1 << order)
-
-    def tb(self, n):
-        k = n.bit_length() - 1
-        short = (2 << k) - n
-        value = self.u(k)
-        return value if value < short else (value << 1 | self.u(1)) - short
-
-    def zigzag(self, order):
-        value = self.eg(order)
-        return -(value + 1) // 2 if value & 1 else value // 2
-
-    def end(self):
-        rest = self.digits[self.at:]
-        if len(rest) >= 8 or "1" in rest:
-            raise Damaged("bits behind the end")
-
-
-def crc32c(data):
-    crc = 0xFFFFFFFF
-    for byte in data:
-        crc ^= byte
-        for _ in range(8):
-            crc = crc >> 1 ^ 0x82F63B78 if crc & 1 else crc >> 1
-    return crc ^ 0xFFFFFFFF
-
-
-def checked(data):
-    content, stored = data[:-4], int.from_bytes(data[-4:], "little")
-    if crc32c(content) != stored:
-        raise Damaged("wrong checksum")
-    return Bits("".join(f"{byte:08b}" for byte in content))
-
-
-class Huffman:
-    def __init__(self, bits, symbols):
-        self.codes = {}  # digits -> symbol
-        used = bits.eg(3)
-        if used == 1:
-            self.codes[""] = bits.eg(3)
-            return
-        lengths = []  # (length, symbol)
-        symbol, last = -1, 4
-        for _ in range(used):
-            symbol += 1 + bits.eg(0)
-            last += bits.zigzag(0)
-            if symbol >= symbols or not 1 <= last <= 15:
-                raise Damaged("a code beyond its symbols")
-            lengths.append((last, symbol))
-        code = before = 0
-        for length, symbol in sorted(lengths):
-            code <<= length - before
-            self.codes[f"{code:0{length}b}"] = symbol
-            code, before = code + 1, length
-        if lengths and code != 1 << before:
-            raise Damaged("a code that is not complete")
-
-    def read(self, bits):
-        for length in range(16):
-            symbol = self.codes.get(bits.digits[bits.at:bits.at + length])
-            if symbol is not None:
-                bits.u(length)
-                return symbol
-        raise Damaged("no such code")
-
-
-# --- base ------------------------------------------------------------------------------------------
-
-
-class Tables:
-    def __init__(self, bits):
-        self.finest = bits.u(5)
-        v = self.classes = bits.u(6)
-        self.cut_lengths = []  # (leaf flags, length), numbered as header symbols are
-        for flags in range(4):
-            length = 0
-            for _ in range(bits.u(5)):
-                length += 1 + bits.eg(2)
-                self.cut_lengths.append((flags, length))
-        self.header = [Huffman(bits, len(self.cut_lengths)) for _ in range(4)]
-        self.level = [Huffman(bits, LEVELS) for _ in range(4)]
-        self.levels = [Huffman(bits, LEVELS * LEVELS) for _ in range(4)]
-        self.joint = [Huffman(bits, v * v) for _ in range(4)]
-        self.residual = [Huffman(bits, v + 4) for _ in range(64)]
-        self.cyclic, self.linear = {}, {}
-        for runs in range(2, RUNS_CODED + 1):
-            self.cyclic[runs] = Huffman(bits, runs * runs + runs)
-            self.linear[runs, False] = Huffman(bits, runs * runs)
-            self.linear[runs, True] = Huffman(bits, runs * runs)
-
-
-def base_triangles(bits, vertices):
-    triangles, seen = [], set()
-    queue, open_edges = [], {}  # an ordered set: insertion order is age
-
-    def add(triangle):
-        triangles.append(triangle)
-        seen.update(triangle)
-        for i in range(3):
-            x, y = triangle[i], triangle[(i + 1) % 3]
-            if (y, x) in open_edges:
-                del open_edges[y, x]
-            else:
-                open_edges[x, y] = True
-                queue.append((x, y))
-
-    for _ in range(bits.eg(1)):
-        a = next(v for v in range(vertices) if v not in seen)
-        add((a, bits.tb(vertices), bits.tb(vertices)))
-        while queue:
-            x, y = queue.pop(0)
-            if (x, y) not in open_edges:
-                continue
-            if bits.u(1) == 0:
-                z = bits.tb(vertices)
-            elif bits.u(1) == 0:
-                z = next(end for start, end in reversed(open_edges) if start == y)
-            elif bits.u(1) == 0:
-                z = next(start for start, end in reversed(open_edges) if end == x)
-            else:
-                z = bits.tb(vertices)
-            add((y, x, z))
-    if open_edges or len(seen) != vertices:
-        raise Damaged("the base mesh is not closed")
-    return triangles
-
-
-class Base:
-    def __init__(self, data):
-        bits = checked(data)
-        if bits.u(32) != 0x4D464201:
-            raise Damaged("no base of version 1")
-        self.grid_bits = bits.u(5)
-        self.splits = bits.eg(16)
-        roots, self.virtuals = bits.eg(8), bits.eg(2)
-        self.tables = Tables(bits)
-        any_leaf, order = bits.u(1), bits.u(5)
-        self.positions, self.levels = [], []  # level None: a leaf
-        last = (0, 0, 0)
-        for _ in range(roots):
-            last = tuple(x + bits.zigzag(order) for x in last)
-            self.positions.append(last)
-            leaf = any_leaf and bits.u(1)
-            self.levels.append(None if leaf else bits.u(self.tables.finest.bit_length()))
-        self.triangles = base_triangles(bits, roots + self.virtuals)
-        bits.end()
-
-
-# --- records and chunks ----------------------------------------------------------------------------
-
-
-class Record:
-    """A node is (tree, path), the path a text of 0 and 1: then texts compare in preorder."""
-
-    def __init__(self, bits, tables, level):
-        context = min(tables.finest - level, 3)
-        flags, length = tables.cut_lengths[tables.header[context].read(bits)]
-        self.child_levels = [None, None]
-        if flags == 0:
-            both = tables.levels[context].read(bits)
-            self.child_levels = [level + both // LEVELS, level + both % LEVELS]
-        elif flags < 3:
-            self.child_levels[1 if flags == 2 else 0] = level + tables.level[context].read(bits)
-        class_b, class_c = divmod(tables.joint[context].read(bits), tables.classes)
-        number = 4 * (min(max(class_b, class_c), 31) // 2) + context
-        class_a = tables.residual[number].read(bits)
-        self.b, self.c, self.residual = (value(bits, k) for k in (class_b, class_c, class_a))
-        self.cut = bits.digits[bits.at:bits.at + length]
-        bits.u(length)
-
-
-def value(bits, value_class):
-    if value_class == 0:
-        return 0
-    negative = bits.u(1)
-    if value_class < 4:
-        magnitude = value_class
-    else:
-        low = value_class // 2 - 1
-        magnitude = (2 + value_class % 2 << low) + bits.u(low)
-    return -magnitude if negative else magnitude
-
-
-def read_set(bits):
-    nodes, tree = [], -1
-    for _ in range(bits.eg(3)):
-        tree += 1 + bits.eg(0)
-        stack = [""]
-        while stack:
-            path = stack.pop()
-            visit = bits.u(2)
-            if visit == 0:
-                nodes.append((tree, path))
-            stack += [path + "1"] * (visit & 1) + [path + "0"] * (visit >> 1)
-    return nodes
-
-
-def read_chunk(data, tables):
-    """Its records by node."""
-    bits = checked(data)
-    if bits.u(32) != 0x4D464301:
-        raise Damaged("no chunk of version 1")
-    band, count = bits.u(5), bits.eg(9)
-    records = {}
-    for top in read_set(bits):
-        stack = [top]
-        while stack and len(records) < count:
-            tree, path = stack.pop()
-            record = records[tree, path] = Record(bits, tables, band)
-            stack += [(tree, path + side) for side in "10"
-                      if record.child_levels[int(side)] == band]
-    bits.end()
-    if len(records) != count:
-        raise Damaged("a chunk with a wrong count")
-    return records
 
 
 # --- positions -------------------------------------------------------------------------------------
@@ -320,73 +77,11 @@ def root_normals(positions, triangles):
     return normals
 
 
-# --- the cut code ----------------------------------------------------------------------------------
-
-
-def parting(one, other):
-    if one[0] != other[0]:
-        return -1
-    depth = 0
-    for x, y in zip(one[1], other[1]):
-        if x != y:
-            return depth
-        depth += 1
-    raise Damaged("a node beside its ancestor")
-
-
-def find_cut(entries, keys, region, tables):
-    """The entries of l and r, and whether l comes first; keys[i] orders the face behind entry i."""
-    size = len(entries)
-    partings = [parting(entries[i], entries[(i + 1) % size]) for i in range(size)]
-    earliest = min(partings)
-    first_gap = min((i for i in range(size) if partings[i] == earliest), key=lambda i: keys[i])
-    origin = (first_gap + 1) % size  # all places below are counted from here
-    partings = partings[origin:] + partings[:origin]
-    forward, backward = Bits(region), Bits(region[::-1])
-
-    def cut(run, depth):
-        begins = [run[0]] + [i + 1 for i in range(run[0], run[1] - 1) if partings[i] == depth]
-        return list(zip(begins, begins[1:] + [run[1]]))
-
-    def sub_runs(run):
-        return cut(run, min(partings[run[0]:run[1] - 1]))
-
-    def single(run):
-        return run[1] - run[0] == 1
-
-    runs = cut((0, size), earliest)
-    count = len(runs)
-    l_first = True
-    if count <= RUNS_CODED:
-        symbol = tables.cyclic[count].read(forward)
-        l_first = symbol < count * count
-        left, right = divmod(symbol, count) if l_first else (symbol - count * count,) * 2
-    else:
-        left, right = forward.tb(count), forward.tb(count)
-        if left == right:
-            l_first = forward.u(1) == 1
-    left, right = runs[left], runs[right]
-    while left == right and not single(left):
-        runs = sub_runs(left)
-        count = len(runs)
-        if count <= RUNS_CODED:
-            one, other = divmod(tables.linear[count, l_first].read(forward), count)
-        else:
-            one = forward.tb(count)
-            other = one + forward.tb(count - one)
-            if not l_first:
-                one, other = other, one
-        left, right = runs[one], runs[other]
-    if left != right:
-        while not single(left):
-            runs = sub_runs(left)
-            left = runs[forward.tb(len(runs))]
-        while not single(right):
-            runs = sub_runs(right)
-            right = runs[backward.tb(len(runs))]
-    if forward.at + backward.at > len(region):
-        raise Damaged("a cut code that reads bits twice")
-    return (left[0] + origin) % size, (right[0] + origin) % size, l_first
+def in_range(old, delta, limit):
+    new = tuple(x + y for x, y in zip(old, delta))
+    if not all(0 <= x < limit for x in new):
+        raise Damaged("a colour or normal out of range")
+    return new
 
 
 # --- the mesh --------------------------------------------------------------------------------------
@@ -408,9 +103,12 @@ class Mesh:
         self.tables = base.tables
         self.limit = 1 << base.grid_bits
         self.positions = list(base.positions) + [None] * base.virtuals
+        self.colours = list(base.colours) + [None] * base.virtuals
+        self.vertex_normals = list(base.normals) + [None] * base.virtuals
         self.nodes = [(tree, "") for tree in range(len(self.positions))]
         normals = root_normals(base.positions, base.triangles)
         self.normals = normals + [None] * base.virtuals
+        self.node_positions = dict(zip(self.nodes, self.positions))  # of split ones too
         self.places = {node: place for place, node in enumerate(self.nodes)}
         self.corners = [v for triangle in base.triangles for v in triangle]
         self.keys = [(-1, "", index) for index in range(len(base.triangles))]
@@ -438,10 +136,11 @@ class Mesh:
         u = self.places.pop(node)
         ring = self.ring(u)
         ends = [self.corners[after(h)] for h in ring]
-        left, right, l_first = find_cut([self.nodes[v] for v in ends],
-                                        [self.keys[h // 3] for h in ring], record.cut, self.tables)
         t = len(self.nodes)
-        self.place_child(node, record, u)
+        frame = self.place_child(node, record, u)
+        left, right, l_first = find_cut([self.nodes[v] for v in ends],
+                                        [self.keys[h // 3] for h in ring], record.cut,
+                                        self.tables.chances, frame, self.node_positions.get)
         moved = (left - right) % len(ring)
         if left == right and l_first:
             moved = len(ring)
@@ -491,6 +190,12 @@ class Mesh:
         self.nodes.append((tree, path + "1"))
         self.places[self.nodes[u]] = u
         self.places[self.nodes[-1]] = len(self.nodes) - 1
+        self.node_positions[self.nodes[u]] = self.positions[u]
+        self.node_positions[self.nodes[-1]] = position
+        self.colours.append(in_range(self.colours[u], record.colour, 256))
+        self.vertex_normals.append(in_range(self.vertex_normals[u], record.normal,
+                                            1 << self.tables.normal_bits))
+        return Frame(self.positions[u], d, n)
 
     def drawn(self):
         triangles = zip(self.corners[::3], self.corners[1::3], self.corners[2::3])
@@ -533,12 +238,32 @@ def write_ply(path, mesh, grid):
     number = {v: i for i, v in enumerate(used)}
     with open(path, "w", encoding="ascii") as file:
         file.write(f"ply\nformat ascii 1.0\nelement vertex {len(used)}\nproperty double x\n"
-                   f"property double y\nproperty double z\nelement face {len(triangles)}\n"
+                   "property double y\nproperty double z\n")
+        if mesh.tables.normal_bits:
+            file.write("property float nx\nproperty float ny\nproperty float nz\n")
+        if mesh.tables.colours:
+            file.write("".join(f"property uchar {c}\n" for c in ("red", "green", "blue", "alpha")))
+        file.write(f"element face {len(triangles)}\n"
                    "property list uchar int vertex_indices\nend_header\n")
         for v in used:
-            file.write(" ".join(repr(o + step * x) for o, x in zip(origin, mesh.positions[v])) + "\n")
+            numbers = [o + step * x for o, x in zip(origin, mesh.positions[v])]
+            if mesh.tables.normal_bits:
+                numbers += direction(mesh.vertex_normals[v], mesh.tables.normal_bits)
+            if mesh.tables.colours:
+                numbers += mesh.colours[v]
+            file.write(" ".join(repr(x) for x in numbers) + "\n")
         for t in triangles:
             file.write("3 " + " ".join(str(number[v]) for v in t) + "\n")
+
+
+def direction(folded, bits):
+    """The unit vector of an octahedral normal."""
+    x, y = (2 * k / ((1 << bits) - 1) - 1 for k in folded)
+    z = 1 - abs(x) - abs(y)
+    if z < 0:
+        x, y = (math.copysign(1 - abs(y), x), math.copysign(1 - abs(x), y))
+    length = math.sqrt(x * x + y * y + z * z)
+    return [x / length, y / length, z / length]
 
 
 def main(url, output, seed=None):

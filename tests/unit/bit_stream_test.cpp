@@ -60,16 +60,6 @@ TEST(BitReader, GivesZerosAndRemembersPastTheEnd) {
   EXPECT_TRUE(outside.overrun());
 }
 
-TEST(BackwardBitReader, ReadsFromTheEndAndStopsAtTheFront) {
-  const Bytes bytes{0b11001010};
-  BackwardBitReader in(bytes, 2, 7);
-  EXPECT_EQ(in.read(3), 0b101U);
-  EXPECT_EQ(in.read(2), 0b00U);
-  EXPECT_FALSE(in.overrun());
-  EXPECT_FALSE(in.readBit());
-  EXPECT_TRUE(in.overrun());
-}
-
 TEST(BitWriter, AppendsBitRanges) {
   std::mt19937_64 random(2);
   Bytes source(64);

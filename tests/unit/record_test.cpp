@@ -4,7 +4,6 @@
 
 #include <random>
 
-#include "shared/codec/cut_coding.h"
 #include "tests/unit/small_tables.h"
 
 namespace meshfront {
@@ -105,18 +104,6 @@ TEST(CodeTables, GoThroughTheWireAndRefuseDamage) {
     BitReader cut(bytes, 0, length * 8);
     EXPECT_FALSE(readCodeTables(cut)) << length;
   }
-}
-
-TEST(CutRegion, KeepsSharedAndOwnBitsApart) {
-  CutBits bits;
-  bits.forward.write(0b110, 3);
-  bits.backward.write(0b01, 2);  // read backward: 0, then 1
-  BitWriter out;
-  appendRegion(out, bits, 8);
-  const Bytes bytes = out.take();
-  EXPECT_EQ(bytes, Bytes{0b11000010});
-  BackwardBitReader in(bytes, 0, 8);
-  EXPECT_EQ(in.read(2), 0b01U);
 }
 
 }  // namespace

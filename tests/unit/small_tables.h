@@ -9,7 +9,7 @@ namespace meshfront {
 
 // Header: 4 leaf flags x cut lengths {4, 6} = 8 symbols of 3 bits. Level differences 0 and 1: 1
 // bit; pairs of them: 2 bits. Value classes: 8, pairs of them 6 bits. Residual classes 0 to 7: 3
-// bits.
+// bits. Every decision of the cut code takes a bit. No attributes.
 [[nodiscard]] inline CodeTables smallTables() {
   CodeTables tables;
   tables.maxLevel = 2;
@@ -27,13 +27,6 @@ namespace meshfront {
   std::vector<uint64_t> residual(tables.residualClasses(), 0);
   for (size_t i = 0; i < 8; ++i) residual[i] = 1;
   for (auto& code : tables.residual) code = HuffmanCode::fromCounts(residual);
-  for (unsigned runs = 2; runs <= kMaxRunsCoded; ++runs) {
-    tables.cyclicRuns[runs] =
-        HuffmanCode::fromCounts(std::vector<uint64_t>(size_t{runs} * runs + runs, 1));
-    for (const unsigned order : {0U, 1U})
-      tables.linearRuns[2 * runs + order] =
-          HuffmanCode::fromCounts(std::vector<uint64_t>(size_t{runs} * runs, 1));
-  }
   return tables;
 }
 

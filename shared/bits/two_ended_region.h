@@ -1,0 +1,143 @@
+// Two sequences of binary decisions in one short string of bits: one is read from its front, the
+// other from its back. Both are arithmetic codes (Rissanen and Langdon, Arithmetic coding, IBM
+// Journal of Research and Development 23(2), 1979), and behind the string's far end a reader sees
+// zeros. So a reader may stop after any prefix of either sequence, the two codes may share bits,
+// and what a string of this length cannot be wrong about is not written.
+//
+//   TwoEndedReader in(bytes, begin, end);
+//   const bool bit = in.forward(48);     // 0 has a chance of 48 in 64
+//
+//   TwoEndedWriter out;                  // the decisions in reading order
+//   out.forward().encode(bit, 48);
+//   const auto region = out.ofLength(out.shortestLength());
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "shared/bits/bit_writer.h"
+
+namespace meshfront {
+
+// Chances of a zero are 1 .. 63 in 64.
+inline constexpr unsigned kChanceBits = 6;
+inline constexpr unsigned kEvenChance = 1U << (kChanceBits - 1);
+
+// The decisions of one direction. Any bits decode to something: there is no damage to notice here.
+class DecisionReader {
+ public:
+  DecisionReader() = default;
+  // Reads bits [begin, end) of `bytes`, from `end` down if backward. begin <= end <= all bits.
+  DecisionReader(std::span<const uint8_t> bytes, uint64_t begin, uint64_t end, bool backward)
+      : bytes_(bytes), begin_(begin), end_(end), backward_(backward) {
+    value_ = take(32);
+  }
+  bool decide(unsigned chanceOfZero) {
+    const uint64_t bound = (range_ >> kChanceBits) * chanceOfZero;
+    const bool bit = value_ >= bound;
+    if (bit) {
+      value_ -= bound;
+      range_ -= bound;
+    } else {
+      range_ = bound;
+    }
+    while (range_ < kLeastRange) {
+      value_ = value_ << 8 | take(8);
+      range_ <<= 8;
+    }
+    return bit;
+  }
+
+ private:
+  friend class DecisionWriter;
+  static constexpr uint64_t kWholeRange = uint64_t{1} << 32;
+  static constexpr uint64_t kLeastRange = uint64_t{1} << 24;
+
+  // The next `count` bits, at most 32; zeros behind the far end.
+  uint64_t take(unsigned count);
+
+  std::span<const uint8_t> bytes_;
+  uint64_t begin_ = 0;
+  uint64_t end_ = 0;
+  uint64_t value_ = 0;
+  uint64_t range_ = kWholeRange;
+  bool backward_ = false;
+};
+
+class TwoEndedReader {
+ public:
+  TwoEndedReader(std::span<const uint8_t> bytes, uint64_t begin, uint64_t end)
+      : forward_(bytes, begin, end, false), bytes_(bytes), begin_(begin), end_(end) {}
+  bool forward(unsigned chanceOfZero) { return forward_.decide(chanceOfZero); }
+  bool backward(unsigned chanceOfZero) {
+    if (!started_) backward_ = DecisionReader(bytes_, begin_, end_, true);
+    started_ = true;
+    return backward_.decide(chanceOfZero);
+  }
+
+ private:
+  DecisionReader forward_;
+  DecisionReader backward_;
+  std::span<const uint8_t> bytes_;
+  uint64_t begin_;
+  uint64_t end_;
+  bool started_ = false;
+};
+
+// The set of bit strings that decode to the decisions so far: an interval of numbers in [0, 1).
+class DecisionWriter {
+ public:
+  void encode(bool bit, unsigned chanceOfZero);
+  void clear();
+
+  // Strings of `length` bits that decode to the decisions: the numbers in [begin, end), if any.
+  // Only if compact(), length <= 56.
+  struct Strings {
+    uint64_t begin = 0;
+    uint64_t end = 0;
+  };
+  [[nodiscard]] Strings strings(unsigned length) const;
+  [[nodiscard]] bool compact() const { return prefix_.size() <= 3; }
+  // The fewest leading bits that decide everything, whatever follows them.
+  [[nodiscard]] std::vector<bool> whole() const;
+  [[nodiscard]] unsigned wholeLength() const;
+
+ private:
+  // The digits behind prefix_, of which the last `free` may be anything; as many as can be.
+  struct FreeDigits {
+    uint64_t first;
+    unsigned free;
+  };
+  [[nodiscard]] FreeDigits freeDigits() const;
+
+  std::vector<uint8_t> prefix_;  // the interval's begin, above `low_`
+  uint64_t low_ = 0;             // below 2^32
+  uint64_t range_ = uint64_t{1} << 32;
+};
+
+class TwoEndedWriter {
+ public:
+  [[nodiscard]] DecisionWriter& forward() { return forward_; }
+  [[nodiscard]] DecisionWriter& backward() { return backward_; }
+  void clear();
+
+  using Region = std::vector<bool>;
+  // Length of the shortest region found; at least 1. Deterministic.
+  [[nodiscard]] unsigned shortestLength() const;
+  // A region of just that many bits; none if no string of that length was found. There is one for
+  // every length from safeLength() on.
+  [[nodiscard]] std::optional<Region> ofLength(unsigned length) const;
+  // The bits of both directions, if none is shared.
+  [[nodiscard]] unsigned safeLength() const;
+
+ private:
+  // The smallest string that both directions accept, if it is cheap to find.
+  [[nodiscard]] std::optional<uint64_t> shared(unsigned length) const;
+
+  DecisionWriter forward_;
+  DecisionWriter backward_;
+};
+
+}  // namespace meshfront
