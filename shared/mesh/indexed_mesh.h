@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 namespace meshfront {
@@ -15,8 +16,10 @@ struct IndexedMesh {
   std::vector<std::array<double, 3>> positions;  // finite
   std::vector<Triangle> triangles;               // every index < positions.size()
   // Either empty or one a position.
-  std::vector<Colour> colours;
-  std::vector<std::array<float, 3>> normals;  // of any length, finite; 0 where there is none
+  std::vector<Colour> colours{};
+  std::vector<std::array<float, 3>> normals{};  // of any length, finite; 0 where there is none
+  // What of the file's mesh is not here, a sentence each, for people; printable ASCII.
+  std::vector<std::string> notCarried{};
 };
 
 }  // namespace meshfront

@@ -58,9 +58,6 @@ Result<IndexedMesh> parseMesh(std::string_view content, MeshFormat format) {
       mesh = readOff(content);
       break;
   }
-  if (mesh && mesh->triangles.empty())
-    return fail("byte " + std::to_string(content.size()) +
-                ": the file ends without a single triangle");
   return mesh;
 }
 

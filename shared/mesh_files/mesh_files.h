@@ -38,10 +38,17 @@ enum class MeshFormat { ply, obj, stl, off };
 // The same from memory; Errors name the place only.
 [[nodiscard]] Result<IndexedMesh> parseMesh(std::string_view content, MeshFormat format);
 
+// What a PLY file shall say of the vertices beside their positions: each empty or one a position.
+struct PlyVertexAttributes {
+  std::span<const Colour> colours;                // written as uchar red, green, blue, alpha
+  std::span<const std::array<float, 3>> normals;  // written as float nx, ny, nz
+};
+
 // Binary little-endian PLY with double coordinates. Atomic: `path` keeps its old content or gets
 // the new one whole (temporary file beside it, fsync, rename). An index out of range is an Error.
 [[nodiscard]] Result<void> writePly(const std::filesystem::path& path,
                                     std::span<const std::array<double, 3>> positions,
-                                    std::span<const Triangle> triangles);
+                                    std::span<const Triangle> triangles,
+                                    const PlyVertexAttributes& attributes = {});
 
 }  // namespace meshfront
