@@ -2,6 +2,8 @@
 // not the file. A mesh without a single triangle is an Error that says why.
 #pragma once
 
+#include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -16,6 +18,9 @@ inline constexpr size_t kMaxFileVertices = INT32_MAX;
 [[nodiscard]] Result<IndexedMesh> readObj(std::string_view file);
 [[nodiscard]] Result<IndexedMesh> readStl(std::string_view file);
 [[nodiscard]] Result<IndexedMesh> readOff(std::string_view file);
+// Buffers in other files are read from `folder`, or below it, and are Errors without one.
+[[nodiscard]] Result<IndexedMesh> readGltf(std::string_view file,
+                                           const std::optional<std::filesystem::path>& folder);
 
 // A binary STL file has no magic number; this is true if its size fits its triangle count.
 [[nodiscard]] bool looksLikeBinaryStl(std::string_view file);

@@ -430,8 +430,8 @@ TEST_F(MeshFilesOnDisk, NamesTheFileInErrors) {
   const auto unknown = put("a.txt", "hello");
   EXPECT_EQ(readMesh(unknown).error().message,
             unknown.string() +
-                ": byte 0: not a mesh file; PLY, OBJ, STL and OFF are read "
-                "(extension or content)");
+                ": byte 0: not a mesh file; PLY, OBJ, STL, OFF and glTF are "
+                "read (extension or content)");
 }
 
 TEST_F(MeshFilesOnDisk, WritesPlyThatReadsBackExactly) {
