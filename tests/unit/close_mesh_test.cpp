@@ -106,6 +106,13 @@ TEST(CloseMesh, KeepsItsPromisesOnRandomSoups) {
   }
 }
 
+TEST(CloseMesh, KeepsItsPromisesOnRandomPatchworks) {
+  for (uint32_t seed = 0; seed < 300; ++seed) {
+    SCOPED_TRACE(seed);
+    expectPromisesKept(randomPatchwork(seed));
+  }
+}
+
 TEST(CloseMesh, IsDeterministic) {
   const IndexedMesh soup = randomSoup(77, 30, 500);
   const auto first = cleaned(soup);

@@ -33,7 +33,7 @@ std::string compress(const std::string& text, Compression compression) {
     size = stream.total_out;
     deflateEnd(&stream);
   } else if (compression == Compression::xz) {
-    EXPECT_EQ(lzma_easy_buffer_encode(6, LZMA_CHECK_CRC64, nullptr, from, text.size(), to, &size,
+    EXPECT_EQ(lzma_easy_buffer_encode(1, LZMA_CHECK_CRC64, nullptr, from, text.size(), to, &size,
                                       out.size()),
               LZMA_OK);
   } else {
@@ -63,7 +63,7 @@ std::string decompressed(const std::string& bytes) {
 
 TEST(Decompress, GivesBackWhatWasCompressed) {
   for (const Compression compression : kAll) {
-    for (const size_t length : {0, 1, 65535, 65536, 65537, 3000000}) {
+    for (const size_t length : {0, 1, 65535, 65536, 65537, 500000}) {
       const std::string text = sample(length);
       const std::string bytes = compress(text, compression);
       EXPECT_EQ(compressionOf(bytes), compression);
