@@ -17,9 +17,10 @@
 //       indexed or not; sparse and normalized accessors; NORMAL, COLOR_0. Not compressed by an
 //       extension.
 //
-// What of a file's mesh is not carried, IndexedMesh::notCarried says. Numbers of colours become 8
-// bits: of 0 .. 1 if they are real, of 0 .. 255 or 0 .. 65535 if they are whole; as stored, no
-// colour space is converted. Of vertices without a colour or normal among others that have one,
+// What of a file's mesh is not carried, IndexedMesh::notCarried says. Channels of colours become 8
+// bits: those of 0 .. 1 if they are real numbers (in OBJ and OFF: unless all of the file are whole
+// and one is larger than 1), of 0 .. 255 or 0 .. 65535 if whole; as stored, no colour space is
+// converted. Of vertices without a colour or normal among others that have one,
 // the colour is opaque white and the normal 0.
 //
 // Polygons become fans around their first corner. Faces of one or two corners are skipped.

@@ -41,9 +41,12 @@ class ObjReader {
                   std::to_string(largestNormal_.index + 1) + " is out of range, there are " +
                   std::to_string(normals_.normalCount()));
     if (mesh_.triangles.empty()) return noTriangles(file_, whatThereIs());
+    const bool of255 = colourScale_.full() == 255;
+    mesh_.colours = std::move(of255 ? coloursOf255_ : coloursOf1_);
     if (!mesh_.colours.empty()) mesh_.colours.resize(mesh_.positions.size(), kNoColour);
     normals_.giveTo(mesh_);
-    mending_.report(mesh_);
+    normalMending_.report(mesh_);
+    (of255 ? mendingOf255_ : mendingOf1_).report(mesh_);
     addNotCarried(mesh_.notCarried, "texture coordinates", textureCoordinates_);
     addNotCarried(mesh_.notCarried, "materials", materials_.size());
     addNotCarried(mesh_.notCarried, "groups and objects", groups_);
@@ -73,7 +76,7 @@ class ObjReader {
     if (mesh_.positions.size() > kMaxFileVertices)
       return fail(ErrorCode::tooLarge, text_.place() + ": more than 2^31 - 1 vertices");
     // One more column is a weight, three or four are a colour.
-    std::array<double, 4> columns = {0, 0, 0, 1};
+    std::array<double, 4> columns{};
     size_t count = 0;
     text_.skipBlanks();
     while (count < columns.size() && text_.number(columns[count])) {
@@ -81,8 +84,16 @@ class ObjReader {
       text_.skipBlanks();
     }
     if (count < 3) return {};
-    mesh_.colours.resize(mesh_.positions.size(), kNoColour);
-    mesh_.colours.back() = mending_.colour(columns, 1);
+    // Which of the two scales it is, only the whole file tells.
+    for (size_t i = 0; i < 3; ++i) colourScale_.see(columns[i]);
+    const auto add = [&](std::vector<Colour>& colours, VertexAttributeMending& mending,
+                         double full) {
+      if (count == 3) columns[3] = full;
+      colours.resize(mesh_.positions.size(), kNoColour);
+      colours.back() = mending.colour(columns, full);
+    };
+    add(coloursOf1_, mendingOf1_, 1);
+    add(coloursOf255_, mendingOf255_, 255);
     return {};
   }
 
@@ -92,7 +103,7 @@ class ObjReader {
       text_.skipBlanks();
       if (!text_.number(component)) return fail(text_.problem("number"));
     }
-    normals_.addNormal(mending_.normal(normal));
+    normals_.addNormal(normalMending_.normal(normal));
     if (normals_.normalCount() > kMaxFileVertices)
       return fail(ErrorCode::tooLarge, text_.place() + ": more than 2^31 - 1 normals");
     return {};
@@ -176,7 +187,12 @@ class ObjReader {
   TextCursor text_;
   IndexedMesh mesh_;
   CornerNormals normals_;
-  VertexAttributeMending mending_;
+  VertexAttributeMending normalMending_;
+  ChannelScale colourScale_;
+  VertexAttributeMending mendingOf1_;
+  VertexAttributeMending mendingOf255_;
+  std::vector<Colour> coloursOf1_;
+  std::vector<Colour> coloursOf255_;
   std::vector<uint32_t> corners_;
   LargestIndex largestVertex_;
   LargestIndex largestNormal_;

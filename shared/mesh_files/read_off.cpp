@@ -71,19 +71,15 @@ class OffAttributes {
     mesh.normals.push_back(mending_.normal(normal));
   }
   void addColour(const std::array<double, 4>& channels) {
+    for (size_t i = 0; i < 3; ++i) scale_.see(channels[i]);
     channels_.push_back(
         {floatOf(channels[0]), floatOf(channels[1]), floatOf(channels[2]), floatOf(channels[3])});
   }
   void addSurplusColumns(uint64_t columns) { surplus_ = std::max(surplus_, columns); }
   void addFaceColour() { ++faceColours_; }
 
-  // Colours are of 0 .. 1 by the format, but many programs write 0 .. 255: so it is if one of them
-  // is larger than 1.
   void giveTo(IndexedMesh& mesh) {
-    double full = 1;
-    for (const auto& channels : channels_)
-      for (size_t i = 0; i < 3; ++i)
-        if (channels[i] > 1) full = UINT8_MAX;
+    const double full = scale_.full();
     for (const auto& c : channels_)
       mesh.colours.push_back(mending_.colour({c[0], c[1], c[2], c[3] < 0 ? full : c[3]}, full));
     mending_.report(mesh);
@@ -97,6 +93,7 @@ class OffAttributes {
  private:
   OffLayout layout_;
   VertexAttributeMending mending_;
+  ChannelScale scale_;
   std::vector<std::array<float, 4>> channels_;  // alpha below 0: there is none
   uint64_t surplus_ = 0;
   uint64_t faceColours_ = 0;

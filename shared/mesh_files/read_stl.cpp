@@ -118,7 +118,12 @@ Result<IndexedMesh> readStl(std::string_view file) {
   if (looksLikeBinaryStl(file)) return readBinaryStl(file);
   TextCursor text(file);
   text.skipSpace();
-  return text.word() == "solid" ? readAsciiStl(file) : readBinaryStl(file);
+  if (text.word() != "solid") return readBinaryStl(file);
+  // Neither does a binary file with something behind its triangles name a facet soon.
+  const std::string_view head = file.substr(0, 2048);
+  const bool isText = head.find("facet") != head.npos || head.find("endsolid") != head.npos ||
+                      head.find('\0') == head.npos;
+  return isText ? readAsciiStl(file) : readBinaryStl(file);
 }
 
 }  // namespace meshfront

@@ -15,6 +15,21 @@ namespace meshfront {
 
 inline constexpr Colour kNoColour = {255, 255, 255, 255};  // of a vertex that has none among others
 
+// Finds out whether text gives channels as 0 .. 1 or as 0 .. 255, which both is usual in OBJ and
+// OFF: the latter if all are whole numbers and one is larger than 1.
+class ChannelScale {
+ public:
+  void see(double channel) {
+    allWhole_ = allWhole_ && std::floor(channel) == channel;
+    largerThanOne_ = largerThanOne_ || channel > 1;
+  }
+  [[nodiscard]] double full() const { return allWhole_ && largerThanOne_ ? 255 : 1; }
+
+ private:
+  bool allWhole_ = true;
+  bool largerThanOne_ = false;
+};
+
 class VertexAttributeMending {
  public:
   // Channels of 0 .. full, alpha too, become 0 .. 255; what lies outside is clamped, NaN is 0.

@@ -310,6 +310,11 @@ TEST(Stl, ReadsBinaryAndWelds) {
     expectMesh(binaryStl(header, kSquareCorners, 2), MeshFormat::stl, kSquare, kSquareFan);
 }
 
+TEST(Stl, ReadsBinaryWithMoreBehindItsTriangles) {
+  for (const char* header : {"a square", "solid misleads many readers"})
+    expectMesh(binaryStl(header, kSquareCorners, 2) + "more", MeshFormat::stl, kSquare, kSquareFan);
+}
+
 TEST(Stl, ReadsAsciiAndWelds) {
   const std::string file =
       "solid a name of words\n"

@@ -127,6 +127,16 @@ TEST(ObjAttributes, ReadsColoursBehindCoordinates) {
       parsed("v 0 0 0 1\nv 1 0 0 1\nv 0 1 0 1\nf 1 2 3\n", MeshFormat::obj).colours.empty());
 }
 
+TEST(ObjAttributes, TellsWholeChannelsFromReal) {
+  EXPECT_EQ(
+      parsed("v 0 0 0 255 0 7\nv 1 0 0 1 1 1 3\nv 0 1 0 0 0 0\nf 1 2 3\n", MeshFormat::obj).colours,
+      (Colours{{255, 0, 7, 255}, {1, 1, 1, 3}, {0, 0, 0, 255}}));
+  const auto bright =
+      parsed("v 0 0 0 1.5 0 1\nv 1 0 0 1 1 1\nv 0 1 0 0 0 0\nf 1 2 3\n", MeshFormat::obj);
+  EXPECT_EQ(bright.colours, (Colours{{255, 0, 255, 255}, {255, 255, 255, 255}, {0, 0, 0, 255}}));
+  EXPECT_EQ(bright.notCarried, (Sentences{"colours: 1 are out of range and were clamped"}));
+}
+
 TEST(ObjAttributes, ReadsNormalsThatAllCornersAgreeOn) {
   const std::string vertices = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 5 5 5\n";
   const auto mesh = parsed(vertices +
