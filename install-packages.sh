@@ -24,6 +24,7 @@ build=(
   libglfw3-dev libimgui-dev            # the window and its panel
   libglm-dev                           # vectors and matrices of the viewer
   libpng-dev                           # pictures
+  zlib1g-dev liblzma-dev libzstd-dev   # compressed mesh files
 )
 # What the programs, the demo and the examples of the README need beside the libraries.
 run=(libegl-mesa0 libgl1-mesa-dri curl xz-utils python3)

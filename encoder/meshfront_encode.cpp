@@ -60,7 +60,9 @@ Result<void> run(const std::string& input, const std::string& output, EncodeOpti
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app{"Encodes a triangle mesh (PLY, OBJ, STL, OFF) into a pack for meshfront-serve."};
+  CLI::App app{
+      "Encodes a triangle mesh (PLY, OBJ, STL, OFF, glTF; also .gz, .xz, .zst) into a "
+      "pack for meshfront-serve."};
   std::string input;
   std::string output;
   bool json = false;

@@ -1,6 +1,7 @@
 #include "encoder/cleaning/close_mesh.h"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 #include <string>
 #include <utility>
@@ -9,6 +10,7 @@
 #include "encoder/cleaning/half_edges.h"
 #include "encoder/cleaning/manifold_edges.h"
 #include "encoder/cleaning/single_fans.h"
+#include "encoder/cleaning/vertex_copies.h"
 #include "shared/mesh/weld_positions.h"
 
 namespace meshfront {
@@ -18,21 +20,67 @@ constexpr uint32_t kUnused = UINT32_MAX;
 // Closing may quadruple the triangles, and half-edges are numbered by 32 bits.
 constexpr size_t kMaxTriangles = UINT32_MAX / 12;
 
-void dropUnreferenced(std::vector<std::array<double, 3>>& positions,
-                      std::vector<Triangle>& triangles, CleaningReport& report) {
-  std::vector<uint32_t> newIndex(positions.size(), kUnused);
+// Numbers the vertices that triangles use anew, in order; by new number the vertex.
+std::vector<uint32_t> keepReferenced(size_t vertexCount, std::vector<Triangle>& triangles) {
+  std::vector<uint32_t> newIndex(vertexCount, kUnused);
   for (const Triangle& t : triangles)
     for (const uint32_t corner : t) newIndex[corner] = 0;
-  uint32_t kept = 0;
-  for (size_t vertex = 0; vertex < positions.size(); ++vertex) {
+  std::vector<uint32_t> kept;
+  for (uint32_t vertex = 0; vertex < vertexCount; ++vertex) {
     if (newIndex[vertex] == kUnused) continue;
-    positions[kept] = positions[vertex];
-    newIndex[vertex] = kept++;
+    newIndex[vertex] = static_cast<uint32_t>(kept.size());
+    kept.push_back(vertex);
   }
-  report.unreferencedVertices = positions.size() - kept;
-  positions.resize(kept);
   for (Triangle& t : triangles)
     for (uint32_t& corner : t) corner = newIndex[corner];
+  return kept;
+}
+
+// The elements of `all` (if there are any) that `which` names.
+template <typename T>
+std::vector<T> chosen(std::vector<T> all, const std::vector<uint32_t>& which) {
+  if (all.empty()) return all;
+  const auto isItself = [i = uint32_t{0}](uint32_t chosenOne) mutable { return chosenOne == i++; };
+  if (which.size() == all.size() && std::all_of(which.begin(), which.end(), isItself)) return all;
+  std::vector<T> out;
+  out.reserve(which.size());
+  for (const uint32_t i : which) out.push_back(all[i]);
+  return out;
+}
+
+// By welded vertex the first vertex of the input that is there.
+std::vector<uint32_t> firstOccurrences(const WeldedPositions& welded) {
+  std::vector<uint32_t> first;
+  first.reserve(welded.positions.size());
+  for (uint32_t vertex = 0; vertex < welded.indexOf.size(); ++vertex)
+    if (welded.indexOf[vertex] == first.size()) first.push_back(vertex);
+  return first;
+}
+
+uint64_t countWeldedDifferently(const IndexedMesh& mesh, const std::vector<uint32_t>& indexOf,
+                                const std::vector<uint32_t>& first) {
+  uint64_t count = 0;
+  if (mesh.colours.empty() && mesh.normals.empty()) return count;
+  for (size_t vertex = 0; vertex < indexOf.size(); ++vertex) {
+    const uint32_t stays = first[indexOf[vertex]];
+    const bool same = (mesh.colours.empty() || mesh.colours[vertex] == mesh.colours[stays]) &&
+                      (mesh.normals.empty() || mesh.normals[vertex] == mesh.normals[stays]);
+    if (!same) ++count;
+  }
+  return count;
+}
+
+bool extentIsFinite(const std::vector<std::array<double, 3>>& positions) {
+  for (size_t axis = 0; axis < 3; ++axis) {
+    double low = 0;
+    double high = 0;
+    for (const auto& p : positions) {
+      low = std::min(low, p[axis]);
+      high = std::max(high, p[axis]);
+    }
+    if (!std::isfinite(high - low)) return false;
+  }
+  return true;
 }
 
 // Joins loops of two boundary edges and closes longer ones. After the split into fans each vertex
@@ -89,33 +137,47 @@ uint64_t countComponents(const ClosedMesh& mesh) {
 
 }  // namespace
 
-Result<ClosedMesh> closeMesh(const IndexedMesh& mesh, CleaningReport& report) {
+Result<ClosedMesh> closeMesh(IndexedMesh mesh, CleaningReport& report) {
   report = {};
   report.verticesIn = mesh.positions.size();
   report.trianglesIn = mesh.triangles.size();
   if (mesh.triangles.size() > kMaxTriangles || mesh.positions.size() > kMaxTriangles)
     return fail(ErrorCode::tooLarge, "cleaning: more than " + std::to_string(kMaxTriangles) +
                                          " triangles or vertices; cut the mesh into parts");
-  auto welded = weldPositions(mesh.positions);
-  report.weldedVertices = mesh.positions.size() - welded.positions.size();
+  if ((!mesh.colours.empty() && mesh.colours.size() != mesh.positions.size()) ||
+      (!mesh.normals.empty() && mesh.normals.size() != mesh.positions.size()))
+    return fail("cleaning: not as many colours or normals as vertices");
+  if (!extentIsFinite(mesh.positions))
+    return fail("cleaning: the coordinates lie too far apart for 64-bit numbers; scale the mesh");
   ClosedMesh closed;
-  closed.positions = std::move(welded.positions);
-  closed.triangles = mesh.triangles;
-  for (Triangle& t : closed.triangles) {
-    for (uint32_t& corner : t) {
-      if (corner >= welded.indexOf.size())
-        return fail("cleaning: vertex index " + std::to_string(corner) + " is out of range");
-      corner = welded.indexOf[corner];
+  closed.triangles = std::move(mesh.triangles);
+  std::vector<uint32_t> inputVertex;  // by welded vertex
+  {
+    const auto welded = weldPositions(mesh.positions);
+    report.weldedVertices = mesh.positions.size() - welded.positions.size();
+    for (Triangle& t : closed.triangles) {
+      for (uint32_t& corner : t) {
+        if (corner >= welded.indexOf.size())
+          return fail("cleaning: vertex index " + std::to_string(corner) + " is out of range");
+        corner = welded.indexOf[corner];
+      }
     }
+    inputVertex = firstOccurrences(welded);
+    report.weldedDifferently = countWeldedDifferently(mesh, welded.indexOf, inputVertex);
   }
-  welded.indexOf = {};
 
-  keepDistinctFaces(closed.positions, closed.triangles, report);
+  VertexCopies vertices(inputVertex.size());
+  keepDistinctFaces(vertices, closed.triangles, report);
   if (closed.triangles.empty())
     return fail("cleaning: no triangle with three different corners is left");
-  const auto twins = joinManifoldEdges(closed.positions.size(), closed.triangles, report);
-  splitIntoFans(closed.positions, closed.triangles, twins, report);
-  dropUnreferenced(closed.positions, closed.triangles, report);
+  const auto twins = joinManifoldEdges(vertices.count(), closed.triangles, report);
+  splitIntoFans(vertices, closed.triangles, twins, report);
+  auto kept = keepReferenced(vertices.count(), closed.triangles);
+  report.unreferencedVertices = vertices.count() - kept.size();
+  for (uint32_t& vertex : kept) vertex = inputVertex[vertices.originalOf(vertex)];
+  closed.positions = chosen(std::move(mesh.positions), kept);
+  closed.colours = chosen(std::move(mesh.colours), kept);
+  closed.normals = chosen(std::move(mesh.normals), kept);
   closed.realTriangleCount = closed.triangles.size();
   closeLoops(closed, twins, report);
   report.components = countComponents(closed);

@@ -8,7 +8,7 @@
 //   auto closed = closeMesh(*readMesh("bunny.ply"), report);
 //
 // What is done, in this order:
-//  1. vertices at exactly equal coordinates are welded;
+//  1. vertices at exactly equal coordinates are welded; the first one's colour and normal stay;
 //  2. faces with two equal corners, and faces that repeat an earlier one (same corners, same
 //     orientation), are dropped; a face with the corners of an earlier one and the opposite
 //     orientation goes to a second layer with vertices of its own (a sheet doubled back to back
@@ -21,6 +21,7 @@
 //  6. each boundary loop (three or more edges, no vertex twice) is closed with triangles to one
 //     virtual vertex;
 //  7. vertices without faces are dropped.
+// Copies of a vertex have its position, colour and normal.
 #pragma once
 
 #include <array>
@@ -38,6 +39,7 @@ struct CleaningReport {
   uint64_t verticesIn = 0;
   uint64_t trianglesIn = 0;
   uint64_t weldedVertices = 0;        // gone into another one at the same coordinates
+  uint64_t weldedDifferently = 0;     // of those: with another colour or normal, which is lost
   uint64_t degenerateFaces = 0;       // dropped: two equal corners after welding
   uint64_t repeatedFaces = 0;         // dropped: the same corners and orientation as an earlier one
   uint64_t oppositeDuplicates = 0;    // kept, on vertices of the second layer
@@ -52,6 +54,8 @@ struct CleaningReport {
 
 struct ClosedMesh {
   std::vector<std::array<double, 3>> positions;  // of the real vertices, 0 .. positions.size() - 1
+  std::vector<Colour> colours;                   // empty or one a real vertex, as the input's
+  std::vector<std::array<float, 3>> normals;     // likewise
   uint32_t virtualCount = 0;                     // the vertices behind those, one a boundary loop
   // The first realTriangleCount are the input's that were kept, in its order and each with its
   // first corner; the others close the loops, have one virtual corner, and are never drawn.
@@ -62,9 +66,10 @@ struct ClosedMesh {
   [[nodiscard]] bool isVirtual(uint32_t vertex) const { return vertex >= positions.size(); }
 };
 
-// Deterministic; O(n log n), about 80 bytes of memory a triangle. An Error if an index is out of
-// range, if no triangle is left, or (tooLarge) beyond 2^32 / 12 triangles. Fills `report` as far as
-// it came in any case.
-[[nodiscard]] Result<ClosedMesh> closeMesh(const IndexedMesh& mesh, CleaningReport& report);
+// Deterministic; O(n log n), about 80 bytes of memory a triangle; uses the mesh up. An Error if an
+// index is out of range, if there are neither none nor as many colours or normals as positions, if
+// the coordinates lie further apart than the largest double, if no triangle is left, or (tooLarge)
+// beyond 2^32 / 12 triangles. Fills `report` as far as it came in any case.
+[[nodiscard]] Result<ClosedMesh> closeMesh(IndexedMesh mesh, CleaningReport& report);
 
 }  // namespace meshfront

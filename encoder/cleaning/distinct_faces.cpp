@@ -60,13 +60,13 @@ std::vector<Fate> fatesOf(size_t vertexCount, const std::vector<Triangle>& trian
 
 }  // namespace
 
-void keepDistinctFaces(std::vector<std::array<double, 3>>& positions,
-                       std::vector<Triangle>& triangles, CleaningReport& report) {
+void keepDistinctFaces(VertexCopies& vertices, std::vector<Triangle>& triangles,
+                       CleaningReport& report) {
   report.degenerateFaces = std::erase_if(
       triangles, [](const Triangle& t) { return t[0] == t[1] || t[1] == t[2] || t[2] == t[0]; });
-  const auto fates = fatesOf(positions.size(), triangles);
+  const auto fates = fatesOf(vertices.count(), triangles);
   std::vector<uint32_t> secondLayer(
-      std::find(fates.begin(), fates.end(), Fate::opposite) == fates.end() ? 0 : positions.size(),
+      std::find(fates.begin(), fates.end(), Fate::opposite) == fates.end() ? 0 : vertices.count(),
       UINT32_MAX);  // by vertex: its copy
   size_t kept = 0;
   for (size_t face = 0; face < fates.size(); ++face) {
@@ -77,8 +77,7 @@ void keepDistinctFaces(std::vector<std::array<double, 3>>& positions,
       for (uint32_t& corner : t) {
         uint32_t& copy = secondLayer[corner];
         if (copy == UINT32_MAX) {
-          copy = static_cast<uint32_t>(positions.size());
-          positions.push_back(std::array(positions[corner]));
+          copy = vertices.copy(corner);
           ++report.verticesSplit;
         }
         corner = copy;

@@ -4,12 +4,13 @@
 #include <vector>
 
 #include "encoder/cleaning/close_mesh.h"
+#include "encoder/cleaning/vertex_copies.h"
 
 namespace meshfront {
 
 // Drops degenerate and repeated faces (order kept) and moves opposite duplicates to copies of their
-// vertices, appended to `positions`. Afterwards no two faces share all three vertices.
-void keepDistinctFaces(std::vector<std::array<double, 3>>& positions,
-                       std::vector<Triangle>& triangles, CleaningReport& report);
+// vertices. Afterwards no two faces share all three vertices.
+void keepDistinctFaces(VertexCopies& vertices, std::vector<Triangle>& triangles,
+                       CleaningReport& report);
 
 }  // namespace meshfront

@@ -16,16 +16,15 @@ HalfEdge firstOfFan(const std::vector<HalfEdge>& twins, HalfEdge h) {
 
 }  // namespace
 
-void splitIntoFans(std::vector<std::array<double, 3>>& positions, std::vector<Triangle>& triangles,
+void splitIntoFans(VertexCopies& vertices, std::vector<Triangle>& triangles,
                    const std::vector<HalfEdge>& twins, CleaningReport& report) {
   std::vector<bool> cornerDone(twins.size());
-  std::vector<bool> vertexTaken(positions.size());
+  std::vector<bool> vertexTaken(vertices.count());
   for (HalfEdge h = 0; h < twins.size(); ++h) {
     if (cornerDone[h]) continue;
     uint32_t vertex = originOf(triangles, h);
     if (vertexTaken[vertex]) {
-      positions.push_back(std::array(positions[vertex]));
-      vertex = static_cast<uint32_t>(positions.size() - 1);
+      vertex = vertices.copy(vertex);
       ++report.verticesSplit;
     } else {
       vertexTaken[vertex] = true;

@@ -7,10 +7,10 @@ namespace meshfront {
 
 Result<ExpectedMesh> publishedMesh(const std::filesystem::path& path,
                                    std::optional<Quantization>& grid, unsigned bits) {
-  const auto mesh = readMesh(path);
+  auto mesh = readMesh(path);
   if (!mesh) return tl::unexpected(mesh.error());
   CleaningReport report;
-  auto closed = closeMesh(*mesh, report);
+  auto closed = closeMesh(std::move(*mesh), report);
   if (!closed) return fail(closed.error().code, path.string() + ": " + closed.error().message);
   if (!grid) grid = quantizationFor(closed->positions, bits);
   ExpectedMesh out;

@@ -69,9 +69,9 @@ Result<EncodedMesh> encodeMesh(IndexedMesh mesh, const EncodeOptions& options,
   PhaseClock clock(report.phases, progress);
 
   clock.begin("clean");
-  auto closed = closeMesh(mesh, report.cleaning);
+  report.notCarried = std::move(mesh.notCarried);
+  auto closed = closeMesh(std::move(mesh), report.cleaning);
   if (!closed) return tl::unexpected(closed.error());
-  mesh = {};
   const Quantization quantization = quantizationFor(closed->positions, options.quantizationBits);
   std::vector<GridPosition> positions;
   positions.reserve(closed->positions.size());

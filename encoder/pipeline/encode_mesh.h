@@ -31,6 +31,7 @@ struct PhaseTime {
 };
 
 struct EncodingReport {
+  std::vector<std::string> notCarried;  // of the file's mesh, a sentence each
   CleaningReport cleaning;
   SimplifyReport simplification;
   FieldBits bits;
@@ -55,7 +56,8 @@ using EncodeProgress = std::function<void(const std::string& phase, double done)
 [[nodiscard]] Result<EncodedMesh> encodeMesh(IndexedMesh mesh, const EncodeOptions& options,
                                              const EncodeProgress& progress = {});
 
-// The report as JSON: "cleaning", "simplification", "bits", "depths"; "phases" only if `withTimes`.
+// The report as JSON: "notCarried", "cleaning", "simplification", "bits", "depths"; "phases" only
+// if `withTimes`.
 [[nodiscard]] std::string toJson(const EncodingReport& report, bool withTimes);
 // For people, several lines.
 [[nodiscard]] std::string describe(const EncodingReport& report);

@@ -32,9 +32,11 @@ std::string toJson(const EncodingReport& report, bool withTimes) {
   const SimplifyReport& s = report.simplification;
   const FieldBits& b = report.bits;
   ordered_json json;
+  json["notCarried"] = report.notCarried;
   json["cleaning"] = {{"verticesIn", c.verticesIn},
                       {"trianglesIn", c.trianglesIn},
                       {"weldedVertices", c.weldedVertices},
+                      {"weldedDifferently", c.weldedDifferently},
                       {"degenerateFaces", c.degenerateFaces},
                       {"repeatedFaces", c.repeatedFaces},
                       {"oppositeDuplicates", c.oppositeDuplicates},
@@ -85,10 +87,13 @@ std::string describe(const EncodingReport& report) {
   const FieldBits& b = report.bits;
   std::string out =
       fmt::format("read        {} vertices, {} triangles\n", c.verticesIn, c.trianglesIn);
+  for (const std::string& sentence : report.notCarried)
+    out += fmt::format("not carried {}\n", sentence);
   const auto count = [&](uint64_t n, const char* what) {
     if (n > 0) out += fmt::format("cleaned     {} {}\n", n, what);
   };
   count(c.weldedVertices, "vertices welded");
+  count(c.weldedDifferently, "of them had another colour or normal, which is lost");
   count(c.degenerateFaces, "degenerate faces dropped");
   count(c.repeatedFaces, "repeated faces dropped");
   count(c.oppositeDuplicates, "opposite duplicate faces given vertices of their own");

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 namespace meshfront {
@@ -17,6 +18,8 @@ struct IndexedMesh {
   // Either empty or one a position.
   std::vector<Colour> colours{};
   std::vector<std::array<float, 3>> normals{};  // of any length, finite; 0 where there is none
+  // What of the file's mesh is not here, a sentence each, for people; printable ASCII.
+  std::vector<std::string> notCarried{};
 };
 
 }  // namespace meshfront

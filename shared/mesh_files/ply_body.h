@@ -25,6 +25,11 @@ class AsciiPlyBody {
     text_.skipSpace();
     return text_.real(value);
   }
+  bool number(PlyScalar /*type*/, double& value) {  // also one that is not finite
+    expected_ = "number";
+    text_.skipSpace();
+    return text_.number(value);
+  }
   bool integer(PlyScalar /*type*/, int64_t& value) {
     expected_ = "whole number";
     text_.skipSpace();
@@ -53,12 +58,13 @@ class BinaryPlyBody {
   BinaryPlyBody(std::string_view file, size_t offset) : file_(file), at_(offset) {}
 
   // A finite number.
-  bool real(PlyScalar type, double& value) {
+  bool real(PlyScalar type, double& value) { return number(type, value) && std::isfinite(value); }
+  bool number(PlyScalar type, double& value) {  // also one that is not finite
     switch (type) {
       case PlyScalar::float32:
-        return take<uint32_t, float>(value) && std::isfinite(value);
+        return take<uint32_t, float>(value);
       case PlyScalar::float64:
-        return take<uint64_t, double>(value) && std::isfinite(value);
+        return take<uint64_t, double>(value);
       default:
         break;
     }

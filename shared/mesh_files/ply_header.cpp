@@ -122,6 +122,8 @@ Result<PlyHeader> parsePlyHeader(std::string_view file) {
       problem = readElement(words, number, header);
     } else if (keyword == "property") {
       problem = readProperty(words, header);
+    } else if (keyword == "comment" && words.size() == 3 && words[1] == "TextureFile") {
+      header.textureFiles.emplace_back(words[2]);
     } else if (keyword == "end_header") {
       if (hasFormat) {
         header.bodyOffset = at;

@@ -29,8 +29,9 @@ struct PlyElement {
 
 struct PlyHeader {
   PlyEncoding encoding = PlyEncoding::ascii;
-  std::vector<PlyElement> elements;  // in the order of the body
-  size_t bodyOffset = 0;             // byte behind the line "end_header"
+  std::vector<PlyElement> elements;       // in the order of the body
+  std::vector<std::string> textureFiles;  // named by comments "TextureFile NAME" (MeshLab)
+  size_t bodyOffset = 0;                  // byte behind the line "end_header"
 };
 
 [[nodiscard]] unsigned byteLength(PlyScalar type);

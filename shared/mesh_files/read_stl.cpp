@@ -5,6 +5,7 @@
 
 #include "shared/mesh/weld_positions.h"
 #include "shared/mesh_files/mesh_readers.h"
+#include "shared/mesh_files/not_carried.h"
 #include "shared/mesh_files/text_cursor.h"
 
 namespace meshfront {
@@ -23,7 +24,9 @@ uint64_t binaryTriangleCount(std::string_view file) {
 }
 
 // Three corners each, in order, become triangles on welded vertices.
-IndexedMesh weldCorners(const std::vector<std::array<double, 3>>& corners) {
+Result<IndexedMesh> weldCorners(std::string_view file,
+                                const std::vector<std::array<double, 3>>& corners) {
+  if (corners.empty()) return noTriangles(file, "no facets");
   auto welded = weldPositions(corners);
   IndexedMesh mesh;
   mesh.positions = std::move(welded.positions);
@@ -54,7 +57,16 @@ Result<IndexedMesh> readBinaryStl(std::string_view file) {
       corners[i][axis] = corner[axis];
     }
   }
-  return weldCorners(corners);
+  uint64_t facetsWithAttributes = 0;  // some programs keep a colour there, each another way
+  for (uint64_t i = 1; i <= count; ++i) {
+    uint16_t attribute = 0;
+    std::memcpy(&attribute, file.data() + kBinaryHeader + i * kBinaryTriangle - sizeof attribute,
+                sizeof attribute);
+    if (attribute != 0) ++facetsWithAttributes;
+  }
+  auto mesh = weldCorners(file, corners);
+  if (mesh) addNotCarried(mesh->notCarried, "facets with attribute bytes", facetsWithAttributes);
+  return mesh;
 }
 
 Result<IndexedMesh> readAsciiStl(std::string_view file) {
@@ -91,7 +103,7 @@ Result<IndexedMesh> readAsciiStl(std::string_view file) {
       return fail(ErrorCode::tooLarge, text.place() + ": more than 2^31 / 3 triangles");
   }
   if (inSolid || !facet.empty()) return fail(text.problem());
-  return weldCorners(corners);
+  return weldCorners(file, corners);
 }
 
 }  // namespace
@@ -106,7 +118,12 @@ Result<IndexedMesh> readStl(std::string_view file) {
   if (looksLikeBinaryStl(file)) return readBinaryStl(file);
   TextCursor text(file);
   text.skipSpace();
-  return text.word() == "solid" ? readAsciiStl(file) : readBinaryStl(file);
+  if (text.word() != "solid") return readBinaryStl(file);
+  // Neither does a binary file with something behind its triangles name a facet soon.
+  const std::string_view head = file.substr(0, 2048);
+  const bool isText = head.find("facet") != head.npos || head.find("endsolid") != head.npos ||
+                      head.find('\0') == head.npos;
+  return isText ? readAsciiStl(file) : readBinaryStl(file);
 }
 
 }  // namespace meshfront

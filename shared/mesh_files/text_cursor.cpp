@@ -4,7 +4,7 @@
 
 namespace meshfront {
 
-bool TextCursor::real(double& value) {
+bool TextCursor::number(double& value) {
   const char* const start = skipPlus();
   double parsed = 0;
   const auto [stop, error] = std::from_chars(start, end_, parsed);
@@ -12,13 +12,24 @@ bool TextCursor::real(double& value) {
   if (error == std::errc::result_out_of_range) {
     const std::string_view spelling(start, static_cast<size_t>(stop - start));
     const bool tiny = spelling.find("e-") != spelling.npos || spelling.find("E-") != spelling.npos;
-    if (!tiny) return false;
-    parsed = 0;
-  } else if (error != std::errc() || !std::isfinite(parsed)) {
+    parsed = tiny ? 0 : std::copysign(HUGE_VAL, *start == '-' ? -1 : 1);
+  } else if (error != std::errc()) {
     return false;
   }
   value = parsed;
   at_ = stop;
+  return true;
+}
+
+bool TextCursor::real(double& value) {
+  const char* const start = at_;
+  double parsed = 0;
+  if (!number(parsed)) return false;
+  if (!std::isfinite(parsed)) {
+    at_ = start;
+    return false;
+  }
+  value = parsed;
   return true;
 }
 

@@ -55,6 +55,8 @@ class TextCursor {
 
   // A finite number. Below the smallest double it is 0.
   bool real(double& value);
+  // The same, or an infinite one (also for a number beyond the largest double), or NaN.
+  bool number(double& value);
   // A whole number; also spelt as a real ("3.0").
   bool integer(int64_t& value);
   // A whole number that something may follow ("3/1/2"): stops behind its digits.

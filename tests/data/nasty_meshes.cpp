@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <random>
 #include <set>
@@ -117,6 +118,68 @@ IndexedMesh flippedNeighbour() {
   return mesh;
 }
 
+IndexedMesh everyThirdFlipped(IndexedMesh mesh) {
+  for (size_t i = 0; i < mesh.triangles.size(); i += 3)
+    std::swap(mesh.triangles[i][1], mesh.triangles[i][2]);
+  return mesh;
+}
+
+IndexedMesh kleinBottle(uint32_t around, uint32_t tube) {  // closed, but with no outside
+  IndexedMesh mesh = torus(around, tube);
+  for (Triangle& t : mesh.triangles) {
+    // Where the last tube circle meets the first one, it is glued on the other way round.
+    const bool seam = *std::max_element(t.begin(), t.end()) >= (around - 1) * tube &&
+                      *std::min_element(t.begin(), t.end()) < tube;
+    for (uint32_t& corner : t)
+      if (seam && corner < tube) corner = (tube - corner) % tube;
+  }
+  return mesh;
+}
+
+IndexedMesh withFlaps(IndexedMesh mesh) {  // a triangle more on the first edge of every face
+  const size_t count = mesh.triangles.size();
+  for (size_t i = 0; i < count; ++i) {
+    const Triangle t = mesh.triangles[i];
+    const auto apex = static_cast<uint32_t>(mesh.positions.size());
+    auto place = mesh.positions[t[0]];
+    place[2] += 1;
+    mesh.positions.push_back(place);
+    mesh.triangles.push_back({t[0], t[1], apex});
+  }
+  return mesh;
+}
+
+IndexedMesh starOfTriangles(uint32_t count) {  // they share one vertex and nothing else
+  IndexedMesh mesh{{{0, 0, 0}}, {}};
+  for (uint32_t i = 0; i < count; ++i) {
+    const double a = 2 * std::numbers::pi * i / count;
+    mesh.positions.push_back({std::cos(a), std::sin(a), i * 0.01});
+    mesh.positions.push_back({std::cos(a + 0.001), std::sin(a + 0.001), i * 0.01});
+    mesh.triangles.push_back({0, 2 * i + 1, 2 * i + 2});
+  }
+  return mesh;
+}
+
+IndexedMesh scaled(IndexedMesh mesh, double factor, const std::array<double, 3>& offset = {}) {
+  for (auto& p : mesh.positions)
+    for (size_t axis = 0; axis < 3; ++axis) p[axis] = p[axis] * factor + offset[axis];
+  return mesh;
+}
+
+IndexedMesh noisilyColoured(IndexedMesh mesh) {
+  std::mt19937 random(7);
+  for (size_t i = 0; i < mesh.positions.size(); ++i) {
+    Colour colour{};
+    for (uint8_t& channel : colour) channel = static_cast<uint8_t>(random() >> 24);
+    mesh.colours.push_back(colour);
+    std::array<float, 3> normal{};
+    for (float& component : normal) component = float(random() >> 8) * 0x1p-23F - 1;
+    if (i % 11 == 0) normal = {};  // none
+    mesh.normals.push_back(normal);
+  }
+  return mesh;
+}
+
 IndexedMesh placed(IndexedMesh mesh, std::array<double, 3> (*place)(uint32_t vertex)) {
   for (uint32_t i = 0; i < mesh.positions.size(); ++i) mesh.positions[i] = place(i);
   return mesh;
@@ -199,9 +262,13 @@ std::vector<NastyMesh> nastyMeshes() {
   add("1600-components", tinyComponents());
   add("torus", torus(40, 20));
   add("smallest-torus", torus(3, 3));
+  add("thin-torus", torus(600, 3));
+  add("klein-bottle", kleinBottle(24, 12));
   add("genus-3", threeHolesBlock());
   add("sphere", sphere(4));
   add("strip", gridPatch(300, 1));
+  add("boundary-of-6002-edges", gridPatch(3000, 1));
+  add("3000-triangles-apart", manyOf(singleTriangle(), 60, 50, 2));
   add("cylinder", ringOfSquares(50, false));
   add("moebius-strip", ringOfSquares(50, true));
   add("smallest-moebius-strip", ringOfSquares(3, true));
@@ -211,7 +278,9 @@ std::vector<NastyMesh> nastyMeshes() {
   add("edge-with-3-faces", pagesOfABook(3));
   add("edge-with-4-faces", pagesOfABook(4));
   add("edge-with-9-faces", pagesOfABook(9));
+  add("flaps", withFlaps(gridPatch(8, 8)));
   add("two-sheets-at-a-vertex", twoSheetsAtAVertex());
+  add("star-of-triangles", starOfTriangles(150));
   add("cubes-sharing-an-edge", cubesTouching({1, 1, 0}));
   add("cubes-sharing-a-corner", cubesTouching({1, 1, 1}));
   add("checkered-cubes", checkeredCubes());
@@ -220,17 +289,18 @@ std::vector<NastyMesh> nastyMeshes() {
   add("sphere-back-to-back", backToBack(sphere(2)));
   add("repeated-faces", repeatedFaces());
   add("flipped-neighbour", flippedNeighbour());
+  add("every-third-flipped", everyThirdFlipped(torus(12, 9)));
   add("on-a-line", placed(gridPatch(8, 8), [](uint32_t i) {
         return std::array<double, 3>{double(i), 0, 0};
       }));
   add("in-a-plane", gridPatch(20, 20));
-  add("in-a-point",
+  add("vanishes-in-a-point",
       placed(gridPatch(5, 5),
              [](uint32_t) {
                return std::array<double, 3>{1, 2, 3};
              }),
       true);
-  add("in-two-points",
+  add("vanishes-in-two-points",
       placed(gridPatch(5, 5),
              [](uint32_t i) {
                return std::array<double, 3>{double(i % 2), 0, 0};
@@ -250,11 +320,19 @@ std::vector<NastyMesh> nastyMeshes() {
       gridPatchWithout(12, 12, [](uint32_t x, uint32_t y) { return (x + y) % 2 == 0; }));
   add("sphere-with-50-holes", sphereWithHoles(50));
   add("far-apart", farApart());
+  add("on-one-grid-point", scaled(sphere(2), 1000 * std::numeric_limits<double>::denorm_min()));
+  add("georeferenced", scaled(sphere(3), 250, {500000.123, 4649776.224, 1234.567}));
+  add("huge", scaled(sphere(3), 4e307));
   add("loose-corners", looseCorners(torus(16, 8)));
+  add("colours-and-normals", noisilyColoured(torus(20, 10)));
+  add("colours-and-normals-at-loose-corners", noisilyColoured(looseCorners(sphere(2))));
+  add("colours-and-normals-in-a-soup", noisilyColoured(randomSoup(4, 50, 200)));
   add("unused-vertices", withUnusedVertices());
   add("sparse-soup", randomSoup(1, 400, 300));
   add("soup", randomSoup(2, 60, 300));
   add("dense-soup", randomSoup(3, 12, 300));
+  for (uint32_t seed = 1; seed <= 3; ++seed)
+    all.push_back({"patchwork-" + std::to_string(seed), randomPatchwork(seed), false});
   return all;
 }
 
@@ -269,6 +347,39 @@ IndexedMesh randomSoup(uint32_t seed, uint32_t vertexCount, uint32_t triangleCou
     auto& triangle = mesh.triangles.emplace_back();
     for (uint32_t& corner : triangle) corner = static_cast<uint32_t>(random() % vertexCount);
   }
+  return mesh;
+}
+
+IndexedMesh randomPatchwork(uint32_t seed) {
+  std::mt19937 random(seed);
+  const auto below = [&](size_t end) { return static_cast<uint32_t>(random() % end); };
+  const uint32_t columns = 2 + below(12);
+  const uint32_t rows = 1 + below(12);
+  IndexedMesh mesh = below(3) == 0 ? torus(columns + 1, rows + 2) : gridPatch(columns, rows);
+  if (below(4) == 0) appendMesh(mesh, IndexedMesh(mesh), {0.5 * below(3), 0, 0.5 * below(3)});
+  for (auto& p : mesh.positions) p[2] += below(1000) * 1e-3;
+  const auto vertices = static_cast<uint32_t>(mesh.positions.size());
+  const size_t triangles = mesh.triangles.size();
+  const std::array<uint32_t, 3> rates = {0, 40, 8};  // one of so many, 0: none
+  const auto timesFor = [&](size_t things) {
+    const uint32_t rate = rates[below(rates.size())];
+    return rate == 0 ? 0 : things / rate + 1;
+  };
+  for (size_t i = timesFor(triangles); i > 0; --i) {  // flip
+    Triangle& t = mesh.triangles[below(triangles)];
+    std::swap(t[0], t[1]);
+  }
+  for (size_t i = timesFor(vertices); i > 0; --i)  // glue by index
+    mesh.triangles[below(triangles)][below(3)] = below(vertices);
+  for (size_t i = timesFor(vertices); i > 0; --i)  // glue by position
+    mesh.positions[below(vertices)] = std::array(mesh.positions[below(vertices)]);
+  for (size_t i = timesFor(triangles); i > 0; --i) {  // repeat, some turned round
+    Triangle t = mesh.triangles[below(triangles)];
+    if (below(2) == 0) std::swap(t[1], t[2]);
+    mesh.triangles.push_back(t);
+  }
+  for (size_t i = timesFor(triangles); i > 0; --i)  // delete
+    mesh.triangles.erase(mesh.triangles.begin() + below(mesh.triangles.size()));
   return mesh;
 }
 

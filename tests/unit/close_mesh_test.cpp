@@ -70,6 +70,22 @@ void expectPromisesKept(const IndexedMesh& input) {
   EXPECT_EQ(report.boundaryLoops, mesh.virtualCount);
 }
 
+// Loose corners (to weld), each face also turned round (to copy) and a vertex without faces.
+IndexedMesh repeatedFacesBackToBack() {
+  const IndexedMesh grid = gridPatch(3, 3);
+  IndexedMesh mesh;
+  for (const Triangle& t : grid.triangles) {
+    const auto first = static_cast<uint32_t>(mesh.positions.size());
+    for (const uint32_t corner : t) mesh.positions.push_back(grid.positions[corner]);
+    mesh.triangles.push_back({first, first + 1, first + 2});
+    mesh.triangles.push_back({first, first + 2, first + 1});
+  }
+  mesh.positions.insert(mesh.positions.begin(), {9, 9, 9});
+  for (Triangle& t : mesh.triangles)
+    for (uint32_t& corner : t) ++corner;
+  return mesh;
+}
+
 TEST(CloseMesh, KeepsItsPromisesOnEveryNastyMesh) {
   for (const NastyMesh& nasty : nastyMeshes()) {
     SCOPED_TRACE(nasty.name);
@@ -87,6 +103,13 @@ TEST(CloseMesh, KeepsItsPromisesOnRandomSoups) {
   for (uint32_t seed = 0; seed < 300; ++seed) {
     SCOPED_TRACE(seed);
     expectPromisesKept(randomSoup(seed, 4 + seed % 40, 10 + seed * 2));
+  }
+}
+
+TEST(CloseMesh, KeepsItsPromisesOnRandomPatchworks) {
+  for (uint32_t seed = 0; seed < 300; ++seed) {
+    SCOPED_TRACE(seed);
+    expectPromisesKept(randomPatchwork(seed));
   }
 }
 
@@ -125,6 +148,65 @@ TEST(CloseMesh, WeldsEqualCoordinatesAndNegativeZero) {
   EXPECT_EQ(report.unreferencedVertices, 1U);
   EXPECT_EQ(mesh.positions.size(), 4U);
   EXPECT_EQ(report.boundaryLoops, 1U);
+}
+
+TEST(CloseMesh, CarriesColoursAndNormalsAlong) {
+  IndexedMesh input = repeatedFacesBackToBack();
+  for (size_t i = 0; i < input.positions.size(); ++i) {  // each tells its position
+    const auto [x, y, z] = input.positions[i];
+    input.colours.push_back({uint8_t(x), uint8_t(y), uint8_t(z), 7});
+    input.normals.push_back({float(x), float(y), float(z)});
+  }
+  const auto [mesh, report] = cleaned(input);
+  EXPECT_GT(report.weldedVertices, 0U);
+  EXPECT_GT(report.verticesSplit, 0U);
+  EXPECT_GT(report.unreferencedVertices, 0U);
+  EXPECT_EQ(report.weldedDifferently, 0U);
+  ASSERT_EQ(mesh.colours.size(), mesh.positions.size());
+  ASSERT_EQ(mesh.normals.size(), mesh.positions.size());
+  for (size_t i = 0; i < mesh.positions.size(); ++i) {
+    const auto [x, y, z] = mesh.positions[i];
+    EXPECT_EQ(mesh.colours[i], (Colour{uint8_t(x), uint8_t(y), uint8_t(z), 7}));
+    EXPECT_EQ(mesh.normals[i], (std::array<float, 3>{float(x), float(y), float(z)}));
+  }
+  EXPECT_TRUE(cleaned(torus(4, 4)).mesh.colours.empty());
+}
+
+TEST(CloseMesh, KeepsTheFirstOfDifferentColoursAndNormalsAndCounts) {
+  IndexedMesh input;
+  input.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 0}, {1, 0, 0}, {0, 0, 0}, {0, 1, 1}};
+  input.triangles = {{0, 1, 2}, {5, 4, 6}, {3, 2, 6}};
+  input.colours.assign(7, {1, 2, 3, 4});
+  input.normals.assign(7, {0, 0, 1});
+  input.colours[3][3] = 5;
+  input.normals[4][0] = 1;
+  const auto [mesh, report] = cleaned(input);
+  EXPECT_EQ(report.weldedVertices, 3U);
+  EXPECT_EQ(report.weldedDifferently, 2U);
+  for (const Colour& colour : mesh.colours) EXPECT_EQ(colour, (Colour{1, 2, 3, 4}));
+  for (const auto& normal : mesh.normals) EXPECT_EQ(normal, (std::array<float, 3>{0, 0, 1}));
+}
+
+TEST(CloseMesh, RefusesAttributesOfSomeVerticesOnly) {
+  CleaningReport report;
+  IndexedMesh mesh = tetrahedron();
+  mesh.colours.resize(3);
+  EXPECT_FALSE(closeMesh(mesh, report));
+  mesh.colours.clear();
+  mesh.normals.resize(5);
+  EXPECT_FALSE(closeMesh(mesh, report));
+}
+
+TEST(CloseMesh, RefusesCoordinatesWhoseDistanceOverflows) {
+  CleaningReport report;
+  IndexedMesh mesh = tetrahedron();
+  mesh.positions[0][1] = -1.7e308;
+  EXPECT_TRUE(closeMesh(mesh, report));
+  mesh.positions[2][1] = 1.7e308;
+  const auto closed = closeMesh(mesh, report);
+  ASSERT_FALSE(closed);
+  EXPECT_EQ(closed.error().message,
+            "cleaning: the coordinates lie too far apart for 64-bit numbers; scale the mesh");
 }
 
 TEST(CloseMesh, DropsRepeatsAndSetsOppositesApart) {

@@ -203,8 +203,10 @@ TEST(Ply, NamesTheLineOfWhatIsWrong) {
   expectError(asciiPly(kSquareVertices, "3 0 1 \n"), ply, "line 15: the file ends early");
   expectError(asciiPly(kSquareVertices, "3 0 1.5 2\n"), ply, "line 14: '1.5' is no whole number");
   expectError(asciiPly(kSquareVertices, "-3 0 1 2\n"), ply, "line 14: a list of negative length");
-  expectError(asciiPly(kSquareVertices, "2 0 1\n"), ply,
-              "byte 183: the file ends without a single triangle");
+  expectError(
+      asciiPly(kSquareVertices, "2 0 1\n"), ply,
+      "byte 183: the file ends without a single triangle: it has 4 vertices, 1 of element face, "
+      "none with three corners");
 }
 
 TEST(Ply, NamesTheByteOfWhatIsWrong) {
@@ -294,13 +296,23 @@ TEST(Obj, NamesTheLineOfWhatIsWrong) {
               "line 4: vertex index 99999999999 is out of range, there are 3 vertices so far");
   expectError(three + "f 1 2 x\n", obj, "line 4: 'x' is no vertex index");
   expectError(three + "f 1 2 3x\n", obj, "line 4: broken vertex index");
-  expectError(three + "f 1 2\n", obj, "byte 30: the file ends without a single triangle");
-  expectError("", obj, "byte 0: the file ends without a single triangle");
+  expectError(
+      three + "f 1 2\n", obj,
+      "byte 30: the file ends without a single triangle: it has 3 vertices and no face with "
+      "three corners");
+  expectError("", obj,
+              "byte 0: the file ends without a single triangle: it has 0 vertices and no face with "
+              "three corners");
 }
 
 TEST(Stl, ReadsBinaryAndWelds) {
   for (const char* header : {"a square", "solid misleads many readers"})
     expectMesh(binaryStl(header, kSquareCorners, 2), MeshFormat::stl, kSquare, kSquareFan);
+}
+
+TEST(Stl, ReadsBinaryWithMoreBehindItsTriangles) {
+  for (const char* header : {"a square", "solid misleads many readers"})
+    expectMesh(binaryStl(header, kSquareCorners, 2) + "more", MeshFormat::stl, kSquare, kSquareFan);
 }
 
 TEST(Stl, ReadsAsciiAndWelds) {
@@ -326,7 +338,8 @@ TEST(Stl, NamesThePlaceOfWhatIsWrong) {
   const auto stl = MeshFormat::stl;
   expectError(binaryStl("", kSquareCorners, UINT32_MAX), stl,
               "byte 184: the file ends early, it promises 4294967295 triangles");
-  expectError(binaryStl("", {}, 0), stl, "byte 84: the file ends without a single triangle");
+  expectError(binaryStl("", {}, 0), stl,
+              "byte 84: the file ends without a single triangle: it has no facets");
   auto corners = kSquareCorners;
   corners[4][1] = std::numeric_limits<double>::infinity();
   expectError(binaryStl("", corners, 2), stl, "byte 162: a coordinate that is not finite");
@@ -358,7 +371,7 @@ TEST(Off, NamesTheLineOfWhatIsWrong) {
   const auto off = MeshFormat::off;
   expectError("4OFF\n", off,
               "line 1: only OFF with three coordinates is read (OFF, COFF, NOFF, STOFF)");
-  expectError("OFF BINARY\n", off, "line 1: binary OFF is not read; convert the file to PLY");
+  expectError("OFF BINARY\n", off, "byte 11: the file ends early");
   expectError("OFF\n3 -1 0\n", off, "line 2: '-1' is no count");
   expectError("OFF\n3 1 0\n0 0 0\n1 0 0\n", off,
               "line 5: the file ends early, it promises 3 vertices and 1 faces");
@@ -366,8 +379,10 @@ TEST(Off, NamesTheLineOfWhatIsWrong) {
               "line 6: vertex index 3 is out of range, there are 3 vertices");
   expectError("OFF\n3 1 0\n0 0 0\n1 inf 0\n0 1 0\n3 0 1 2\n", off,
               "line 4: 'inf' is no finite number");
-  expectError("OFF\n3 0 0\n0 0 0\n1 0 0\n0 1 0\n", off,
-              "byte 28: the file ends without a single triangle");
+  expectError(
+      "OFF\n3 0 0\n0 0 0\n1 0 0\n0 1 0\n", off,
+      "byte 28: the file ends without a single triangle: it has 3 vertices and no face with "
+      "three corners");
   expectError("OFF\n9000000000000000000 1 0\n0 0 0\n", off,
               "line 4: the file ends early, it promises 9000000000000000000 vertices and 1 faces");
   countErrorsOfPrefixes("COFF\n3 1 0\n0 0 0 1\n1 0 0 1\n0 1 0 1\n3 0 1 2\n", off);
@@ -420,8 +435,8 @@ TEST_F(MeshFilesOnDisk, NamesTheFileInErrors) {
   const auto unknown = put("a.txt", "hello");
   EXPECT_EQ(readMesh(unknown).error().message,
             unknown.string() +
-                ": byte 0: not a mesh file; PLY, OBJ, STL and OFF are read "
-                "(extension or content)");
+                ": byte 0: not a mesh file; PLY, OBJ, STL, OFF and glTF are "
+                "read (extension or content)");
 }
 
 TEST_F(MeshFilesOnDisk, WritesPlyThatReadsBackExactly) {
