@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
+#include "encoder/pipeline/base_advice.h"
 #include "encoder/pipeline/encode_mesh.h"
 #include "encoder/pipeline/progress_bar.h"
 
@@ -45,6 +46,9 @@ Result<void> run(const std::string& input, const std::string& output, EncodeOpti
   const SignalsHeldBack held;
   const auto written = writePack(output, std::move(encoded->pack));
   if (!written) return tl::unexpected(written.error());
+  for (const std::string& advice :
+       adviceOnBase(encoded->report.simplification, written->vertexCount))
+    fmt::print(stderr, "meshfront-encode: warning: {}\n", advice);
   if (json) {
     auto out = nlohmann::ordered_json::parse(toJson(encoded->report, true));
     out["metadata"] = nlohmann::ordered_json::parse(toJson(*written));
@@ -79,6 +83,10 @@ int main(int argc, char** argv) {
   app.add_option("--balance", options.balance,
                  "Exponent that keeps trees shallow: 0 (off), 1 or 2 (shallower)")
       ->check(CLI::Range(0, 2))
+      ->capture_default_str();
+  app.add_option("--max-valence", options.maxValence,
+                 "Vertices with more neighbours than this stay in the base mesh")
+      ->check(CLI::Range(6U, kLargestMaxValence))
       ->capture_default_str();
   app.add_option("--threads", options.threads, "Threads; the result does not depend on them")
       ->check(CLI::Range(1, 256))

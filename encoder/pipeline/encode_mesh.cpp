@@ -90,6 +90,7 @@ Result<EncodedMesh> encodeMesh(IndexedMesh mesh, const EncodeOptions& options,
   SimplifyOptions simplifyOptions;
   simplifyOptions.baseFraction = options.baseFraction;
   simplifyOptions.balance = options.balance;
+  simplifyOptions.maxValence = options.maxValence;
   const Simplification simplification =
       simplify(positions, closed->virtualCount, closed->triangles, closed->realTriangleCount,
                simplifyOptions, [&](size_t done, size_t planned) {

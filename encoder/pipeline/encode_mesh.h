@@ -21,6 +21,7 @@ struct EncodeOptions {
   unsigned quantizationBits = kDefaultQuantizationBits;
   double baseFraction = 0.002;
   unsigned balance = 1;
+  uint32_t maxValence = SimplifyOptions{}.maxValence;
   unsigned threads = 2;  // changes the time, never the result
 };
 

@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "encoder/pipeline/base_advice.h"
 #include "encoder/pipeline/encode_mesh.h"
 
 namespace meshfront {
@@ -51,6 +52,22 @@ std::string toJson(const EncodingReport& report, bool withTimes) {
       {"refusedByDepth", s.refusedByDepth}, {"refusedByValence", s.refusedByValence},
       {"refusedVirtual", s.refusedVirtual}, {"postponedFlips", s.postponedFlips},
       {"acceptedFlips", s.acceptedFlips}};
+  if (s.why == StopReason::noValidCollapse) {
+    const EndState& e = s.endState;
+    json["simplification"]["endState"] = {{"directions", e.directions},
+                                          {"refusedBySmallestComponent", e.smallestComponent},
+                                          {"refusedVirtual", e.virtualVertex},
+                                          {"refusedByLink", e.link},
+                                          {"refusedByDepth", e.depth},
+                                          {"refusedByValence", e.valence},
+                                          {"refusedByDepthAlone", e.depthAlone},
+                                          {"refusedByValenceAlone", e.valenceAlone},
+                                          {"valenceNeeded", e.valenceNeeded},
+                                          {"components", e.components},
+                                          {"smallestComponents", e.smallestComponents},
+                                          {"handles", e.handles}};
+  }
+  json["simplification"]["advice"] = adviceOnBase(s, b.splits + s.baseVertices);
   json["bits"] = {{"splits", b.splits},
                   {"header", b.header},
                   {"leafFlagsEntropy", b.leafFlags},
@@ -101,6 +118,8 @@ std::string describe(const EncodingReport& report) {
   out += fmt::format("components  {}\n", c.components);
   out += fmt::format("base        {} vertices (wanted {}): {}\n", s.baseVertices, s.wantedVertices,
                      describe(s.why));
+  for (const std::string& advice : adviceOnBase(s, b.splits + s.baseVertices))
+    out += fmt::format("base        {}\n", advice);
   out += fmt::format("hierarchy   {} splits, deepest node {}\n", b.splits, report.maxDepth);
   out += fmt::format(
       "bits/split  cut code with length {:.2f}, leaf flags {:.2f}, significance {:.2f}, "
