@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
+#include "encoder/pipeline/available_memory.h"
 #include "encoder/pipeline/base_advice.h"
 #include "encoder/pipeline/encode_mesh.h"
 #include "encoder/pipeline/progress_bar.h"
@@ -68,6 +69,7 @@ int main(int argc, char** argv) {
   std::string input;
   std::string output;
   bool json = false;
+  uint64_t memoryLimit = 0;
   EncodeOptions options;
   options.threads = std::max(1U, std::thread::hardware_concurrency());
   app.add_option("INPUT", input, "Mesh file")->required();
@@ -91,11 +93,24 @@ int main(int argc, char** argv) {
   app.add_option("--threads", options.threads, "Threads; the result does not depend on them")
       ->check(CLI::Range(1, 256))
       ->capture_default_str();
+  app.add_option("--memory-limit", memoryLimit,
+                 "Memory it may take, for example 20GiB; a mesh that is estimated to need more is "
+                 "refused (default: what is available)")
+      ->transform(CLI::AsSizeValue(false))
+      ->check(CLI::PositiveNumber);
   app.add_flag("--json", json, "Report as JSON");
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : 2;
+  }
+  if (memoryLimit > 0) {
+    options.memoryLimit = memoryLimit;
+    options.memoryLimitedBy = "--memory-limit";
+  } else {
+    const AvailableMemory available = availableMemory();
+    options.memoryLimit = available.bytes;
+    options.memoryLimitedBy = available.limitedBy;
   }
   try {
     if (const auto done = run(input, output, options, json); !done) {
@@ -104,6 +119,9 @@ int main(int argc, char** argv) {
     }
   } catch (const std::bad_alloc&) {
     fmt::print(stderr, "meshfront-encode: out of memory; the mesh needs a larger machine\n");
+    return 1;
+  } catch (const std::exception& error) {  // no thread can be started, no file can be looked at
+    fmt::print(stderr, "meshfront-encode: {}\n", error.what());
     return 1;
   }
   return 0;

@@ -1,10 +1,13 @@
 #include "encoder/pipeline/encode_mesh.h"
 
+#include <fmt/format.h>
 #include <sys/resource.h>
 
 #include <algorithm>
 #include <chrono>
+#include <system_error>
 
+#include "encoder/pipeline/memory_estimate.h"
 #include "shared/codec/base_mesh.h"
 #include "shared/mesh_files/mesh_files.h"
 
@@ -40,6 +43,26 @@ class PhaseClock {
   std::chrono::steady_clock::time_point started_;
 };
 
+// Gives the memory back; assigning {} to a vector would keep it.
+template <typename Container>
+void release(Container& container) {
+  Container().swap(container);
+}
+
+// An Error if the estimate is above the limit.
+Result<void> fits(const MeshSize& size, uint64_t fileBytes, const EncodeOptions& options) {
+  constexpr double kMebi = 1048576;
+  const uint64_t needed = estimateMemory(size, fileBytes).peak();
+  if (needed <= options.memoryLimit) return {};
+  return fail(
+      ErrorCode::tooLarge,
+      fmt::format("encoding {} vertices and {} triangles needs about {:.0f} MiB of memory, "
+                  "but {} leaves {:.0f} MiB; use a machine with more, cut the mesh into "
+                  "parts, or allow more with --memory-limit if there is swap",
+                  size.vertices, size.triangles, static_cast<double>(needed) / kMebi,
+                  options.memoryLimitedBy, static_cast<double>(options.memoryLimit) / kMebi));
+}
+
 std::vector<uint64_t> leavesByDepth(const VertexForest& forest, size_t realVertices) {
   std::vector<uint64_t> counts(forest.maxDepth() + 1, 0);
   for (uint32_t v = 0; v < realVertices; ++v) ++counts[forest.id(v).depth];
@@ -53,6 +76,12 @@ Result<EncodedMesh> encodeFile(const std::filesystem::path& input, const EncodeO
   std::vector<PhaseTime> reading;
   PhaseClock clock(reading, progress);
   clock.begin("read");
+  if (const auto promised = promisedSize(input)) {
+    std::error_code problem;
+    const auto fileBytes = std::filesystem::file_size(input, problem);
+    if (auto fit = fits(*promised, problem ? 0 : fileBytes, options); !fit)
+      return fail(fit.error().code, input.string() + ": " + fit.error().message);
+  }
   auto mesh = readMesh(input);
   if (!mesh) return tl::unexpected(mesh.error());
   clock.end();
@@ -69,6 +98,9 @@ Result<EncodedMesh> encodeMesh(IndexedMesh mesh, const EncodeOptions& options,
   PhaseClock clock(report.phases, progress);
 
   clock.begin("clean");
+  const MeshSize size{mesh.positions.size(), mesh.triangles.size()};
+  if (auto fit = fits(size, 0, options); !fit) return tl::unexpected(fit.error());
+  report.estimatedPeakBytes = estimateMemory(size, 0).peak();
   auto closed = closeMesh(mesh, report.cleaning);
   if (!closed) return tl::unexpected(closed.error());
   mesh = {};
@@ -84,14 +116,17 @@ Result<EncodedMesh> encodeMesh(IndexedMesh mesh, const EncodeOptions& options,
       metadata.boundsMax[i] = std::max(metadata.boundsMax[i], p[i]);
     }
   }
-  closed->positions = {};
+  release(closed->positions);
+  // Cutting and closing may have made more of both.
+  const MeshSize closedSize{positions.size() + closed->virtualCount, closed->triangles.size()};
+  if (auto fit = fits(closedSize, 0, options); !fit) return tl::unexpected(fit.error());
 
   clock.begin("simplify");
   SimplifyOptions simplifyOptions;
   simplifyOptions.baseFraction = options.baseFraction;
   simplifyOptions.balance = options.balance;
   simplifyOptions.maxValence = options.maxValence;
-  const Simplification simplification =
+  Simplification simplification =
       simplify(positions, closed->virtualCount, closed->triangles, closed->realTriangleCount,
                simplifyOptions, [&](size_t done, size_t planned) {
                  clock.report(static_cast<double>(done) / static_cast<double>(planned));
@@ -102,6 +137,7 @@ Result<EncodedMesh> encodeMesh(IndexedMesh mesh, const EncodeOptions& options,
 
   clock.begin("hierarchy");
   const VertexForest forest(positions, closed->virtualCount, simplification.collapses);
+  release(simplification.collapses);
   report.maxDepth = forest.maxDepth();
   report.leavesByDepth = leavesByDepth(forest, positions.size());
 

@@ -88,6 +88,7 @@ std::string toJson(const EncodingReport& report, bool withTimes) {
   json["maxDepth"] = report.maxDepth;
   json["leavesByDepth"] = report.leavesByDepth;
   if (withTimes) {
+    json["estimatedPeakMiB"] = static_cast<double>(report.estimatedPeakBytes) / 1048576.0;
     for (const PhaseTime& phase : report.phases)
       json["phases"].push_back({{"name", phase.name},
                                 {"seconds", phase.seconds},
