@@ -1,35 +1,55 @@
 // meshfront-encode: a mesh file becomes a pack.
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <CLI/CLI.hpp>
+#include <cerrno>
 #include <csignal>
 #include <nlohmann/json.hpp>
+#include <system_error>
 #include <thread>
 
 #include "encoder/pipeline/available_memory.h"
 #include "encoder/pipeline/base_advice.h"
 #include "encoder/pipeline/encode_mesh.h"
+#include "encoder/pipeline/phase_clock.h"
 #include "encoder/pipeline/progress_bar.h"
 
 namespace {
 
 using namespace meshfront;
 
-// While the pack is written an interrupt waits, so that none is left half written.
+// While the pack is written an interrupt waits: writing looks for it and gives up, with nothing
+// left behind; then it is delivered. Before, there is nothing yet that could be left.
 class SignalsHeldBack {
  public:
   SignalsHeldBack() {
-    sigset_t set;
-    sigemptyset(&set);
-    sigaddset(&set, SIGINT);
-    sigaddset(&set, SIGTERM);
-    pthread_sigmask(SIG_BLOCK, &set, &before_);
+    sigemptyset(&set_);
+    for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+      struct sigaction action {};
+      sigaction(signal, nullptr, &action);
+      if (action.sa_handler != SIG_IGN) sigaddset(&set_, signal);
+    }
+    pthread_sigmask(SIG_BLOCK, &set_, &before_);
   }
   ~SignalsHeldBack() { pthread_sigmask(SIG_SETMASK, &before_, nullptr); }
   SignalsHeldBack(const SignalsHeldBack&) = delete;
   SignalsHeldBack& operator=(const SignalsHeldBack&) = delete;
 
+  [[nodiscard]] bool interrupted() const {
+    sigset_t waiting;
+    sigpending(&waiting);
+    sigandset(&waiting, &waiting, &set_);
+    return sigisemptyset(&waiting) == 0;
+  }
+  // The pack is there: from now on an interrupt comes too late to change how this ends.
+  void ignore() const {
+    for (const int signal : {SIGINT, SIGTERM, SIGHUP})
+      if (sigismember(&set_, signal) == 1) std::signal(signal, SIG_IGN);
+  }
+
  private:
+  sigset_t set_{};
   sigset_t before_{};
 };
 
@@ -40,13 +60,25 @@ Result<void> run(const std::string& input, const std::string& output, EncodeOpti
     return fail("'" + options.name +
                 "' is no mesh name (letters, digits, '.', '_', '-', at most 64, no dot first); "
                 "choose one with --name");
+  const auto folder = std::filesystem::absolute(output).parent_path();
+  if (::access(folder.c_str(), W_OK | X_OK) != 0)
+    return fail(folder.string() +
+                ": no pack can be written there: " + std::generic_category().message(errno));
   ProgressBar bar;
-  auto encoded = encodeFile(input, options,
-                            [&](const std::string& phase, double done) { bar.show(phase, done); });
+  const EncodeProgress progress = [&](const std::string& phase, double done) {
+    bar.show(phase, done);
+  };
+  auto encoded = encodeFile(input, options, progress);
   if (!encoded) return tl::unexpected(encoded.error());
+  PhaseClock clock(encoded->report.phases, progress);
+  clock.begin("write");
   const SignalsHeldBack held;
-  const auto written = writePack(output, std::move(encoded->pack));
+  const auto written =
+      writePack(output, std::move(encoded->pack), [&] { return held.interrupted(); });
   if (!written) return tl::unexpected(written.error());
+  held.ignore();
+  clock.end();
+  bar.clear();
   for (const std::string& advice :
        adviceOnBase(encoded->report.simplification, written->vertexCount))
     fmt::print(stderr, "meshfront-encode: warning: {}\n", advice);

@@ -1,47 +1,17 @@
 #include "encoder/pipeline/encode_mesh.h"
 
 #include <fmt/format.h>
-#include <sys/resource.h>
 
 #include <algorithm>
-#include <chrono>
 #include <system_error>
 
 #include "encoder/pipeline/memory_estimate.h"
+#include "encoder/pipeline/phase_clock.h"
 #include "shared/codec/base_mesh.h"
 #include "shared/mesh_files/mesh_files.h"
 
 namespace meshfront {
 namespace {
-
-// Times phases and says when one begins.
-class PhaseClock {
- public:
-  PhaseClock(std::vector<PhaseTime>& phases, const EncodeProgress& progress)
-      : phases_(phases), progress_(progress) {}
-  void begin(const std::string& name) {
-    end();
-    phases_.push_back({name, 0, 0});
-    started_ = std::chrono::steady_clock::now();
-    report(0);
-  }
-  void end() {
-    if (phases_.empty()) return;
-    const auto now = std::chrono::steady_clock::now();
-    phases_.back().seconds = std::chrono::duration<double>(now - started_).count();
-    rusage usage{};
-    getrusage(RUSAGE_SELF, &usage);
-    phases_.back().peakBytes = static_cast<uint64_t>(usage.ru_maxrss) * 1024;
-  }
-  void report(double done) const {
-    if (progress_) progress_(phases_.back().name, done);
-  }
-
- private:
-  std::vector<PhaseTime>& phases_;
-  const EncodeProgress& progress_;
-  std::chrono::steady_clock::time_point started_;
-};
 
 // Gives the memory back; assigning {} to a vector would keep it.
 template <typename Container>
