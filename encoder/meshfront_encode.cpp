@@ -1,33 +1,55 @@
 // meshfront-encode: a mesh file becomes a pack.
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <CLI/CLI.hpp>
+#include <cerrno>
 #include <csignal>
 #include <nlohmann/json.hpp>
+#include <system_error>
 #include <thread>
 
+#include "encoder/pipeline/available_memory.h"
+#include "encoder/pipeline/base_advice.h"
 #include "encoder/pipeline/encode_mesh.h"
+#include "encoder/pipeline/phase_clock.h"
 #include "encoder/pipeline/progress_bar.h"
 
 namespace {
 
 using namespace meshfront;
 
-// While the pack is written an interrupt waits, so that none is left half written.
+// While the pack is written an interrupt waits: writing looks for it and gives up, with nothing
+// left behind; then it is delivered. Before, there is nothing yet that could be left.
 class SignalsHeldBack {
  public:
   SignalsHeldBack() {
-    sigset_t set;
-    sigemptyset(&set);
-    sigaddset(&set, SIGINT);
-    sigaddset(&set, SIGTERM);
-    pthread_sigmask(SIG_BLOCK, &set, &before_);
+    sigemptyset(&set_);
+    for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+      struct sigaction action {};
+      sigaction(signal, nullptr, &action);
+      if (action.sa_handler != SIG_IGN) sigaddset(&set_, signal);
+    }
+    pthread_sigmask(SIG_BLOCK, &set_, &before_);
   }
   ~SignalsHeldBack() { pthread_sigmask(SIG_SETMASK, &before_, nullptr); }
   SignalsHeldBack(const SignalsHeldBack&) = delete;
   SignalsHeldBack& operator=(const SignalsHeldBack&) = delete;
 
+  [[nodiscard]] bool interrupted() const {
+    sigset_t waiting;
+    sigpending(&waiting);
+    sigandset(&waiting, &waiting, &set_);
+    return sigisemptyset(&waiting) == 0;
+  }
+  // The pack is there: from now on an interrupt comes too late to change how this ends.
+  void ignore() const {
+    for (const int signal : {SIGINT, SIGTERM, SIGHUP})
+      if (sigismember(&set_, signal) == 1) std::signal(signal, SIG_IGN);
+  }
+
  private:
+  sigset_t set_{};
   sigset_t before_{};
 };
 
@@ -38,13 +60,28 @@ Result<void> run(const std::string& input, const std::string& output, EncodeOpti
     return fail("'" + options.name +
                 "' is no mesh name (letters, digits, '.', '_', '-', at most 64, no dot first); "
                 "choose one with --name");
+  const auto folder = std::filesystem::absolute(output).parent_path();
+  if (::access(folder.c_str(), W_OK | X_OK) != 0)
+    return fail(folder.string() +
+                ": no pack can be written there: " + std::generic_category().message(errno));
   ProgressBar bar;
-  auto encoded = encodeFile(input, options,
-                            [&](const std::string& phase, double done) { bar.show(phase, done); });
+  const EncodeProgress progress = [&](const std::string& phase, double done) {
+    bar.show(phase, done);
+  };
+  auto encoded = encodeFile(input, options, progress);
   if (!encoded) return tl::unexpected(encoded.error());
+  PhaseClock clock(encoded->report.phases, progress);
+  clock.begin("write");
   const SignalsHeldBack held;
-  const auto written = writePack(output, std::move(encoded->pack));
+  const auto written =
+      writePack(output, std::move(encoded->pack), [&] { return held.interrupted(); });
   if (!written) return tl::unexpected(written.error());
+  held.ignore();
+  clock.end();
+  bar.clear();
+  for (const std::string& advice :
+       adviceOnBase(encoded->report.simplification, written->vertexCount))
+    fmt::print(stderr, "meshfront-encode: warning: {}\n", advice);
   if (json) {
     auto out = nlohmann::ordered_json::parse(toJson(encoded->report, true));
     out["metadata"] = nlohmann::ordered_json::parse(toJson(*written));
@@ -66,6 +103,7 @@ int main(int argc, char** argv) {
   std::string input;
   std::string output;
   bool json = false;
+  uint64_t memoryLimit = 0;
   EncodeOptions options;
   options.threads = std::max(1U, std::thread::hardware_concurrency());
   app.add_option("INPUT", input, "Mesh file")->required();
@@ -75,6 +113,18 @@ int main(int argc, char** argv) {
                  "Bits a coordinate on the grid of the bounding cube")
       ->check(CLI::Range(kMinQuantizationBits, kMaxQuantizationBits))
       ->capture_default_str();
+  app.add_option("--normal-bits", options.normalBits,
+                 "Bits of each of the two coordinates of the vertices' normals, 4 to 15; 0 leaves "
+                 "them out")
+      ->check([](const std::string& text) {
+        const bool digits = text.find_first_not_of("0123456789") == std::string::npos;
+        const unsigned long bits = digits && text.size() < 4 ? std::stoul("0" + text) : 99;
+        return bits == 0 || (bits >= kMinNormalBits && bits <= kMaxNormalBits)
+                   ? std::string()
+                   : "neither 0 nor 4 to 15";
+      })
+      ->capture_default_str();
+  app.add_flag("!--no-colours", options.colours, "Leave the vertices' colours out");
   app.add_option("--base-fraction", options.baseFraction, "Base mesh as a share of the vertices")
       ->check(CLI::Range(0.0, 1.0))
       ->capture_default_str();
@@ -82,14 +132,31 @@ int main(int argc, char** argv) {
                  "Exponent that keeps trees shallow: 0 (off), 1 or 2 (shallower)")
       ->check(CLI::Range(0, 2))
       ->capture_default_str();
+  app.add_option("--max-valence", options.maxValence,
+                 "Vertices with more neighbours than this stay in the base mesh")
+      ->check(CLI::Range(6U, kLargestMaxValence))
+      ->capture_default_str();
   app.add_option("--threads", options.threads, "Threads; the result does not depend on them")
       ->check(CLI::Range(1, 256))
       ->capture_default_str();
+  app.add_option("--memory-limit", memoryLimit,
+                 "Memory it may take, for example 20GiB; a mesh that is estimated to need more is "
+                 "refused (default: what is available)")
+      ->transform(CLI::AsSizeValue(false))
+      ->check(CLI::PositiveNumber);
   app.add_flag("--json", json, "Report as JSON");
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : 2;
+  }
+  if (memoryLimit > 0) {
+    options.memoryLimit = memoryLimit;
+    options.memoryLimitedBy = "--memory-limit";
+  } else {
+    const AvailableMemory available = availableMemory();
+    options.memoryLimit = available.bytes;
+    options.memoryLimitedBy = available.limitedBy;
   }
   try {
     if (const auto done = run(input, output, options, json); !done) {
@@ -98,6 +165,9 @@ int main(int argc, char** argv) {
     }
   } catch (const std::bad_alloc&) {
     fmt::print(stderr, "meshfront-encode: out of memory; the mesh needs a larger machine\n");
+    return 1;
+  } catch (const std::exception& error) {  // no thread can be started, no file can be looked at
+    fmt::print(stderr, "meshfront-encode: {}\n", error.what());
     return 1;
   }
   return 0;

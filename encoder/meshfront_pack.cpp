@@ -1,5 +1,6 @@
 // meshfront-pack: what is in a pack, and proof that it is right.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
 #include <fstream>
@@ -60,12 +61,16 @@ Result<int> verify(const std::string& path, const std::string& against, unsigned
   auto pack = Pack::open(path);
   if (!pack) return tl::unexpected(pack.error());
   std::optional<Quantization> grid = (*pack)->metadata().quantization;
-  const auto expected = publishedMesh(against, grid, grid->bits);
+  const auto store =
+      std::make_unique<PackStore>(*pack, std::make_shared<MemoryBudget>(kIndexBudget));
+  const auto base = baseOf(*store);
+  if (!base) return tl::unexpected(base.error());
+  const auto expected =
+      publishedMesh(against, grid, grid->bits, base->base().tables.attributes.layout);
   if (!expected) return tl::unexpected(expected.error());
-  PackStore store(*pack, std::make_shared<MemoryBudget>(kIndexBudget));
   unsigned wrong = 0;
   ordered_json rows = ordered_json::array();
-  const auto results = verifyOrders(store, *expected, orders, [&](const OrderResult& r) {
+  const auto results = verifyOrders(*store, *expected, orders, [&](const OrderResult& r) {
     if (!r.exact()) ++wrong;
     rows.push_back({{"order", r.order},
                     {"seed", r.seed},
@@ -96,22 +101,33 @@ Result<int> verify(const std::string& path, const std::string& against, unsigned
   return wrong == 0 ? 0 : 1;
 }
 
+std::vector<std::string> attributeNames(const AttributeLayout& layout) {
+  std::vector<std::string> names;
+  if (layout.colours) names.emplace_back("colours");
+  if (layout.normalBits != 0) names.push_back(fmt::format("normals of {} bits", layout.normalBits));
+  return names;
+}
+
+std::string nothingOr(const std::vector<std::string>& names) {
+  return names.empty() ? "nothing" : fmt::format("{}", fmt::join(names, ", "));
+}
+
 // A pack's full mesh if the file is one.
-Result<std::optional<ExpectedMesh>> fromPack(const std::string& path,
-                                             std::optional<Quantization>& grid) {
+Result<std::optional<GridMesh>> fromPack(const std::string& path,
+                                         std::optional<Quantization>& grid) {
   const auto extension = std::filesystem::path(path).extension();
-  if (extension != ".pack") return std::optional<ExpectedMesh>();
+  if (extension != ".pack") return std::optional<GridMesh>();
   auto pack = Pack::open(path);
   if (!pack) return tl::unexpected(pack.error());
   PackStore store(*pack, std::make_shared<MemoryBudget>(kIndexBudget));
   const auto mesh = fullMesh(store);
   if (!mesh) return tl::unexpected(mesh.error());
   grid = (*pack)->metadata().quantization;
-  auto snapshot = mesh->snapshot();
-  return ExpectedMesh{std::move(snapshot.positions), std::move(snapshot.triangles)};
+  return mesh->snapshot();
 }
 
-Result<int> compare(const std::string& a, const std::string& b, unsigned bits, bool json) {
+Result<int> compare(const std::string& a, const std::string& b, unsigned bits, unsigned normalBits,
+                    bool json) {
   std::optional<Quantization> grid;
   std::optional<Quantization> gridB;
   auto meshA = fromPack(a, grid);
@@ -119,34 +135,44 @@ Result<int> compare(const std::string& a, const std::string& b, unsigned bits, b
   auto meshB = fromPack(b, gridB);
   if (!meshB) return tl::unexpected(meshB.error());
   if (!grid) grid = gridB;
+  const AttributeLayout layout = *meshA   ? (*meshA)->layout
+                                 : *meshB ? (*meshB)->layout
+                                          : AttributeLayout{true, normalBits};
   if (!*meshA) {
-    auto read = publishedMesh(a, grid, bits);
+    auto read = publishedMesh(a, grid, bits, layout);
     if (!read) return tl::unexpected(read.error());
     *meshA = std::move(*read);
   }
   if (!*meshB) {
-    auto read = meshOnGrid(b, *grid);
+    auto read = meshOnGrid(b, *grid, layout);
     if (!read) return tl::unexpected(read.error());
     *meshB = std::move(*read);
   }
-  const ExpectedMesh& first = **meshA;
-  const ExpectedMesh& second = **meshB;
-  const auto difference =
-      compareTriangles(first.positions, first.triangles, second.positions, second.triangles);
+  const GridMesh& first = **meshA;
+  const GridMesh& second = **meshB;
+  auto difference = compareMeshes(first, second);
+  const bool sameLayout = first.layout == second.layout;
   if (json) {
-    fmt::print("{}\n", ordered_json{{"equal", difference.equal()},
+    fmt::print("{}\n", ordered_json{{"equal", difference.equal() && sameLayout},
+                                    {"attributesA", attributeNames(first.layout)},
+                                    {"attributesB", attributeNames(second.layout)},
                                     {"onlyInA", difference.missingInSecond},
                                     {"onlyInB", difference.missingInFirst},
                                     {"trianglesA", first.triangles.size()},
                                     {"trianglesB", second.triangles.size()}}
                            .dump(2));
+  } else if (!sameLayout) {
+    fmt::print("different: the vertices of {} carry {}, those of {} {}\n", a,
+               nothingOr(attributeNames(first.layout)), b,
+               nothingOr(attributeNames(second.layout)));
   } else if (difference.equal()) {
-    fmt::print("equal: {} triangles on the same grid positions\n", first.triangles.size());
+    fmt::print("equal: {} triangles on the same grid positions{}\n", first.triangles.size(),
+               first.layout.any() ? ", the same " + nothingOr(attributeNames(first.layout)) : "");
   } else {
     fmt::print("different: {} triangles only in {}, {} only in {}\n", difference.missingInSecond, a,
                difference.missingInFirst, b);
   }
-  return difference.equal() ? 0 : 1;
+  return difference.equal() && sameLayout ? 0 : 1;
 }
 
 }  // namespace
@@ -159,6 +185,7 @@ int main(int argc, char** argv) {
   std::string b;
   unsigned orders = 12;
   unsigned bits = kDefaultQuantizationBits;
+  unsigned normalBits = kDefaultNormalBits;
 
   auto* infoCommand = app.add_subcommand("info", "Counts, bounds, bytes and the encoder's report");
   infoCommand->add_option("PACK", a, "Pack")->required();
@@ -173,11 +200,17 @@ int main(int argc, char** argv) {
       app.add_subcommand("compare",
                          "Are A (a mesh file, cleaned as the encoder does, or a .pack) and B (a "
                          "mesh file as it is, or "
-                         "a .pack) the same triangles on the same quantised positions?");
+                         "a .pack) the same triangles on the same quantised positions, with the "
+                         "same colours and normals?");
   compareCommand->add_option("A", a, "Mesh file or pack")->required();
   compareCommand->add_option("B", b, "Mesh file or pack")->required();
   compareCommand->add_option("--quantization", bits, "Bits of A's grid, unless one is a pack")
       ->check(CLI::Range(kMinQuantizationBits, kMaxQuantizationBits))
+      ->capture_default_str();
+  compareCommand
+      ->add_option("--normal-bits", normalBits,
+                   "Bits of a normal's coordinate, unless one is a pack")
+      ->check(CLI::Range(kMinNormalBits, kMaxNormalBits))
       ->capture_default_str();
   for (auto* command : {infoCommand, verifyCommand, compareCommand})
     command->add_flag("--json", json, "Print JSON");
@@ -189,7 +222,7 @@ int main(int argc, char** argv) {
   try {
     Result<int> done = *infoCommand     ? info(a, json)
                        : *verifyCommand ? verify(a, b, orders, json)
-                                        : compare(a, b, bits, json);
+                                        : compare(a, b, bits, normalBits, json);
     if (done) return *done;
     fmt::print(stderr, "meshfront-pack: {}\n", done.error().message);
   } catch (const std::bad_alloc&) {

@@ -14,6 +14,7 @@ namespace meshfront {
 using ForestNode = uint32_t;  // 0 .. leafCount-1: the closed mesh's vertices; then one a collapse
 inline constexpr uint32_t kNoNode = UINT32_MAX;
 
+// Memory: 68 bytes a vertex.
 class VertexForest {
  public:
   // `positions`: real vertices; virtual ones follow them and are no part of any collapse.

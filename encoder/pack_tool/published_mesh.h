@@ -4,19 +4,19 @@
 #include <filesystem>
 #include <optional>
 
-#include "encoder/pack_tool/verify_pack.h"
-#include "shared/mesh/quantization.h"
+#include "shared/mesh/grid_mesh.h"
 #include "shared/result.h"
 
 namespace meshfront {
 
 // Reads and cleans a mesh file and puts it on `grid`, or on its own of `bits` bits if that is not
-// given (then it is filled in).
-[[nodiscard]] Result<ExpectedMesh> publishedMesh(const std::filesystem::path& path,
-                                                 std::optional<Quantization>& grid, unsigned bits);
+// given (then it is filled in). Of what its vertices carry it has what `layout` names.
+[[nodiscard]] Result<GridMesh> publishedMesh(const std::filesystem::path& path,
+                                             std::optional<Quantization>& grid, unsigned bits,
+                                             const AttributeLayout& layout);
 
 // Reads a mesh file as it is, an exported one say, and puts it on `grid`.
-[[nodiscard]] Result<ExpectedMesh> meshOnGrid(const std::filesystem::path& path,
-                                              const Quantization& grid);
+[[nodiscard]] Result<GridMesh> meshOnGrid(const std::filesystem::path& path,
+                                          const Quantization& grid, const AttributeLayout& layout);
 
 }  // namespace meshfront

@@ -61,10 +61,9 @@ bool frontIsRight(const SelectivelyRefinedMesh& mesh, const Leaves& leaves) {
   return expected == there && there.size() == mesh.drawnTriangleCount();
 }
 
-bool isExpected(const SelectivelyRefinedMesh& mesh, const ExpectedMesh& expected) {
-  const auto got = mesh.snapshot();
-  return compareTriangles(got.positions, got.triangles, expected.positions, expected.triangles)
-      .equal();
+bool isExpected(const SelectivelyRefinedMesh& mesh, const GridMesh& expected) {
+  const GridMesh got = mesh.snapshot();
+  return got.layout == expected.layout && compareMeshes(got, expected).equal();
 }
 
 // Collapses a random tenth of what can be collapsed, checks the front, and splits it again.
@@ -89,7 +88,7 @@ bool collapseAndReturn(SelectivelyRefinedMesh& mesh, const Leaves& leaves, std::
   return right;
 }
 
-Result<OrderResult> runOrder(RecordStore& store, const Leaves& leaves, const ExpectedMesh& expected,
+Result<OrderResult> runOrder(RecordStore& store, const Leaves& leaves, const GridMesh& expected,
                              unsigned number) {
   OrderResult result;
   const auto kind = static_cast<OrderKind>(number % kOrderKinds);
@@ -135,7 +134,7 @@ Result<OrderResult> runOrder(RecordStore& store, const Leaves& leaves, const Exp
 }  // namespace
 
 Result<std::vector<OrderResult>> verifyOrders(
-    RecordStore& store, const ExpectedMesh& expected, unsigned orders,
+    RecordStore& store, const GridMesh& expected, unsigned orders,
     const std::function<void(const OrderResult&)>& report) {
   const auto full = fullMesh(store);
   if (!full) return tl::unexpected(full.error());

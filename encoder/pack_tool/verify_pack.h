@@ -7,8 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "shared/mesh/indexed_mesh.h"
-#include "shared/mesh/quantization.h"
+#include "shared/mesh/grid_mesh.h"
 #include "shared/result.h"
 #include "shared/store/record_store.h"
 
@@ -26,16 +25,11 @@ struct OrderResult {
   [[nodiscard]] bool exact() const { return frontsWrong == 0 && finalExact; }
 };
 
-struct ExpectedMesh {
-  std::vector<GridPosition> positions;
-  std::vector<Triangle> triangles;
-};
-
 // Runs `orders` orders, the kinds of RefinementOrder in turn, with answers of 1, 37, 2,000 and
 // 100,000 records; some collapse parts of the mesh on the way. Calls `report` behind each. An Error
 // if the pack cannot be decoded at all or its full mesh is not `expected`.
 [[nodiscard]] Result<std::vector<OrderResult>> verifyOrders(
-    RecordStore& store, const ExpectedMesh& expected, unsigned orders,
+    RecordStore& store, const GridMesh& expected, unsigned orders,
     const std::function<void(const OrderResult&)>& report);
 
 }  // namespace meshfront

@@ -1,49 +1,47 @@
 #include "encoder/pipeline/encode_mesh.h"
 
-#include <sys/resource.h>
+#include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
+#include <system_error>
 
+#include "encoder/pipeline/memory_estimate.h"
+#include "encoder/pipeline/phase_clock.h"
 #include "shared/codec/base_mesh.h"
 #include "shared/mesh_files/mesh_files.h"
 
 namespace meshfront {
 namespace {
 
-// Times phases and says when one begins.
-class PhaseClock {
- public:
-  PhaseClock(std::vector<PhaseTime>& phases, const EncodeProgress& progress)
-      : phases_(phases), progress_(progress) {}
-  void begin(const std::string& name) {
-    end();
-    phases_.push_back({name, 0, 0});
-    started_ = std::chrono::steady_clock::now();
-    report(0);
-  }
-  void end() {
-    if (phases_.empty()) return;
-    const auto now = std::chrono::steady_clock::now();
-    phases_.back().seconds = std::chrono::duration<double>(now - started_).count();
-    rusage usage{};
-    getrusage(RUSAGE_SELF, &usage);
-    phases_.back().peakBytes = static_cast<uint64_t>(usage.ru_maxrss) * 1024;
-  }
-  void report(double done) const {
-    if (progress_) progress_(phases_.back().name, done);
-  }
+// Gives the memory back; assigning {} to a vector would keep it.
+template <typename Container>
+void release(Container& container) {
+  Container().swap(container);
+}
 
- private:
-  std::vector<PhaseTime>& phases_;
-  const EncodeProgress& progress_;
-  std::chrono::steady_clock::time_point started_;
-};
+// An Error if the estimate is above the limit.
+Result<void> fits(const MeshSize& size, uint64_t fileBytes, const EncodeOptions& options) {
+  constexpr double kMebi = 1048576;
+  const uint64_t needed = estimateMemory(size, fileBytes).peak();
+  if (needed <= options.memoryLimit) return {};
+  return fail(
+      ErrorCode::tooLarge,
+      fmt::format("encoding {} vertices and {} triangles needs about {:.0f} MiB of memory, "
+                  "but {} leaves {:.0f} MiB; use a machine with more, cut the mesh into "
+                  "parts, or allow more with --memory-limit if there is swap",
+                  size.vertices, size.triangles, static_cast<double>(needed) / kMebi,
+                  options.memoryLimitedBy, static_cast<double>(options.memoryLimit) / kMebi));
+}
 
 std::vector<uint64_t> leavesByDepth(const VertexForest& forest, size_t realVertices) {
   std::vector<uint64_t> counts(forest.maxDepth() + 1, 0);
   for (uint32_t v = 0; v < realVertices; ++v) ++counts[forest.id(v).depth];
   return counts;
+}
+
+// What of the mesh's attributes the options want.
+AttributeLayout layoutOf(const ClosedMesh& mesh, const EncodeOptions& options) {
+  return {options.colours && !mesh.colours.empty(), mesh.normals.empty() ? 0 : options.normalBits};
 }
 
 }  // namespace
@@ -53,6 +51,12 @@ Result<EncodedMesh> encodeFile(const std::filesystem::path& input, const EncodeO
   std::vector<PhaseTime> reading;
   PhaseClock clock(reading, progress);
   clock.begin("read");
+  if (const auto promised = promisedSize(input)) {
+    std::error_code problem;
+    const auto fileBytes = std::filesystem::file_size(input, problem);
+    if (auto fit = fits(*promised, problem ? 0 : fileBytes, options); !fit)
+      return fail(fit.error().code, input.string() + ": " + fit.error().message);
+  }
   auto mesh = readMesh(input);
   if (!mesh) return tl::unexpected(mesh.error());
   clock.end();
@@ -70,6 +74,9 @@ Result<EncodedMesh> encodeMesh(IndexedMesh mesh, const EncodeOptions& options,
 
   clock.begin("clean");
   report.notCarried = std::move(mesh.notCarried);
+  const MeshSize size{mesh.positions.size(), mesh.triangles.size()};
+  if (auto fit = fits(size, 0, options); !fit) return tl::unexpected(fit.error());
+  report.estimatedPeakBytes = estimateMemory(size, 0).peak();
   auto closed = closeMesh(std::move(mesh), report.cleaning);
   if (!closed) return tl::unexpected(closed.error());
   const Quantization quantization = quantizationFor(closed->positions, options.quantizationBits);
@@ -84,13 +91,21 @@ Result<EncodedMesh> encodeMesh(IndexedMesh mesh, const EncodeOptions& options,
       metadata.boundsMax[i] = std::max(metadata.boundsMax[i], p[i]);
     }
   }
-  closed->positions = {};
+  release(closed->positions);
+  const AttributeLayout layout = layoutOf(*closed, options);
+  const auto attributes = packAttributes(closed->colours, closed->normals, layout);
+  release(closed->colours);
+  release(closed->normals);
+  // Cutting and closing may have made more of both.
+  const MeshSize closedSize{positions.size() + closed->virtualCount, closed->triangles.size()};
+  if (auto fit = fits(closedSize, 0, options); !fit) return tl::unexpected(fit.error());
 
   clock.begin("simplify");
   SimplifyOptions simplifyOptions;
   simplifyOptions.baseFraction = options.baseFraction;
   simplifyOptions.balance = options.balance;
-  const Simplification simplification =
+  simplifyOptions.maxValence = options.maxValence;
+  Simplification simplification =
       simplify(positions, closed->virtualCount, closed->triangles, closed->realTriangleCount,
                simplifyOptions, [&](size_t done, size_t planned) {
                  clock.report(static_cast<double>(done) / static_cast<double>(planned));
@@ -101,12 +116,14 @@ Result<EncodedMesh> encodeMesh(IndexedMesh mesh, const EncodeOptions& options,
 
   clock.begin("hierarchy");
   const VertexForest forest(positions, closed->virtualCount, simplification.collapses);
+  release(simplification.collapses);
   report.maxDepth = forest.maxDepth();
   report.leavesByDepth = leavesByDepth(forest, positions.size());
 
   clock.begin("code");
-  const CodingInput codingInput{positions, closed->virtualCount, closed->triangles,
-                                options.quantizationBits};
+  const CodingInput codingInput{
+      positions, closed->virtualCount, closed->triangles, options.quantizationBits, layout,
+      attributes};
   CodedMesh coded =
       codeMesh(codingInput, forest, options.threads, [&](uint64_t done, uint64_t planned) {
         clock.report(static_cast<double>(done) / static_cast<double>(planned));
@@ -124,6 +141,8 @@ Result<EncodedMesh> encodeMesh(IndexedMesh mesh, const EncodeOptions& options,
   metadata.maxLevel = forest.maxLevel();
   metadata.maxDepth = forest.maxDepth();
   metadata.quantization = quantization;
+  if (layout.colours) metadata.attributes.emplace_back("colour");
+  if (layout.normalBits != 0) metadata.attributes.emplace_back("normal");
   metadata.recordBytes = (coded.bits.total() + 7) / 8;
   out.pack.base = std::move(coded.base);
   out.pack.chunkIndex = std::move(coded.chunkIndex);

@@ -19,15 +19,22 @@ namespace meshfront {
 struct EncodeOptions {
   std::string name;  // of the mesh in the catalogue; see isMeshName()
   unsigned quantizationBits = kDefaultQuantizationBits;
+  bool colours = true;                       // carry the input's, if it has any
+  unsigned normalBits = kDefaultNormalBits;  // of each coordinate of normals; 0: leave them out
   double baseFraction = 0.002;
   unsigned balance = 1;
+  uint32_t maxValence = SimplifyOptions{}.maxValence;
   unsigned threads = 2;  // changes the time, never the result
+  // Bytes that the process may take. Work that is estimated to need more (memory_estimate.h) is
+  // refused before it starts, as ErrorCode::tooLarge.
+  uint64_t memoryLimit = UINT64_MAX;
+  std::string memoryLimitedBy = "the memory limit";  // what set it, for the message
 };
 
 struct PhaseTime {
   std::string name;
   double seconds = 0;
-  uint64_t peakBytes = 0;  // of the process's memory, when the phase ended
+  uint64_t peakBytes = 0;  // of the process's memory so far, when the phase ended
 };
 
 struct EncodingReport {
@@ -38,6 +45,7 @@ struct EncodingReport {
   uint64_t tableBits = 0;
   unsigned maxDepth = 0;
   std::vector<uint64_t> leavesByDepth;
+  uint64_t estimatedPeakBytes = 0;  // as told before the work, but for reading
   std::vector<PhaseTime> phases;
 };
 

@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "encoder/pipeline/base_advice.h"
 #include "encoder/pipeline/encode_mesh.h"
 
 namespace meshfront {
@@ -53,12 +54,30 @@ std::string toJson(const EncodingReport& report, bool withTimes) {
       {"refusedByDepth", s.refusedByDepth}, {"refusedByValence", s.refusedByValence},
       {"refusedVirtual", s.refusedVirtual}, {"postponedFlips", s.postponedFlips},
       {"acceptedFlips", s.acceptedFlips}};
+  if (s.why == StopReason::noValidCollapse) {
+    const EndState& e = s.endState;
+    json["simplification"]["endState"] = {{"directions", e.directions},
+                                          {"refusedBySmallestComponent", e.smallestComponent},
+                                          {"refusedVirtual", e.virtualVertex},
+                                          {"refusedByLink", e.link},
+                                          {"refusedByDepth", e.depth},
+                                          {"refusedByValence", e.valence},
+                                          {"refusedByDepthAlone", e.depthAlone},
+                                          {"refusedByValenceAlone", e.valenceAlone},
+                                          {"valenceNeeded", e.valenceNeeded},
+                                          {"components", e.components},
+                                          {"smallestComponents", e.smallestComponents},
+                                          {"handles", e.handles}};
+  }
+  json["simplification"]["advice"] = adviceOnBase(s, b.splits + s.baseVertices);
   json["bits"] = {{"splits", b.splits},
                   {"header", b.header},
                   {"leafFlagsEntropy", b.leafFlags},
                   {"significance", b.significance},
                   {"positionClasses", b.positionClasses},
                   {"positionValues", b.positionValues},
+                  {"colours", b.colours},
+                  {"normals", b.normals},
                   {"cutRegions", b.cutRegions},
                   {"ofThosePadding", b.cutPadding},
                   {"total", b.total()},
@@ -69,10 +88,13 @@ std::string toJson(const EncodingReport& report, bool withTimes) {
       {"leafFlags", each(b.leafFlags, b.splits)},
       {"significance", each(static_cast<double>(b.significance), b.splits)},
       {"position", each(static_cast<double>(b.positionClasses + b.positionValues), b.splits)},
+      {"colours", each(static_cast<double>(b.colours), b.splits)},
+      {"normals", each(static_cast<double>(b.normals), b.splits)},
       {"total", each(static_cast<double>(b.total()), b.splits)}};
   json["maxDepth"] = report.maxDepth;
   json["leavesByDepth"] = report.leavesByDepth;
   if (withTimes) {
+    json["estimatedPeakMiB"] = static_cast<double>(report.estimatedPeakBytes) / 1048576.0;
     for (const PhaseTime& phase : report.phases)
       json["phases"].push_back({{"name", phase.name},
                                 {"seconds", phase.seconds},
@@ -106,13 +128,20 @@ std::string describe(const EncodingReport& report) {
   out += fmt::format("components  {}\n", c.components);
   out += fmt::format("base        {} vertices (wanted {}): {}\n", s.baseVertices, s.wantedVertices,
                      describe(s.why));
+  for (const std::string& advice : adviceOnBase(s, b.splits + s.baseVertices))
+    out += fmt::format("base        {}\n", advice);
   out += fmt::format("hierarchy   {} splits, deepest node {}\n", b.splits, report.maxDepth);
+  std::string carried;
+  if (b.colours > 0)
+    carried += fmt::format("colours {:.2f}, ", each(static_cast<double>(b.colours), b.splits));
+  if (b.normals > 0)
+    carried += fmt::format("normals {:.2f}, ", each(static_cast<double>(b.normals), b.splits));
   out += fmt::format(
       "bits/split  cut code with length {:.2f}, leaf flags {:.2f}, significance {:.2f}, "
-      "position {:.2f}, total {:.2f}\n",
+      "position {:.2f}, {}total {:.2f}\n",
       each(static_cast<double>(b.header + b.cutRegions) - b.leafFlags, b.splits),
       each(b.leafFlags, b.splits), each(static_cast<double>(b.significance), b.splits),
-      each(static_cast<double>(b.positionClasses + b.positionValues), b.splits),
+      each(static_cast<double>(b.positionClasses + b.positionValues), b.splits), carried,
       each(static_cast<double>(b.total()), b.splits));
   for (const PhaseTime& phase : report.phases)
     out += fmt::format("time        {:<9} {:7.3f} s, peak {:.0f} MiB\n", phase.name, phase.seconds,

@@ -9,6 +9,8 @@ namespace meshfront {
 namespace {
 
 constexpr float kLengthWeight = 1e-5F;
+// From here on a ring is not walked where asking for single neighbours will do.
+constexpr uint32_t kLongRing = 64;
 constexpr float kNever = std::numeric_limits<float>::infinity();
 
 Offset difference(const Offset& a, const Offset& b) {
@@ -102,7 +104,7 @@ bool CollapseChooser::linkConditionHolds(uint32_t at) const {
   if (size_ == 3 && valence == 3) return false;
   const uint32_t before = ids_[at == 0 ? size_ - 1 : at - 1];
   const uint32_t after = ids_[at + 1 == size_ ? 0 : at + 1];
-  if (valence > kMaxRemovedValence) {
+  if (valence > kLongRing) {
     return std::none_of(ids_.begin(), ids_.begin() + size_, [&](uint32_t v) {
       return v != kept && v != before && v != after && adjacent(v, kept);
     });
@@ -146,7 +148,7 @@ void CollapseChooser::fetch(std::span<const CollapseQueue::Entry> entries) const
 CollapseChoice CollapseChooser::choose(uint32_t removed) {
   const SimplifyVertex& vertex = vertices_[removed];
   size_ = 0;
-  if (vertex.valence > kMaxRemovedValence) {
+  if (vertex.valence > maxValence_) {
     ++counts_.refusedByValence;
     return CollapseChoice();
   }

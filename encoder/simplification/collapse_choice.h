@@ -1,6 +1,7 @@
 // Where a vertex goes if it is removed: the cheapest neighbour that the rules allow.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cstdint>
@@ -14,9 +15,6 @@
 #include "encoder/simplification/vertex_quadric.h"
 
 namespace meshfront {
-
-// A vertex with more neighbours than this is not removed: moving it would look at all of them.
-inline constexpr uint32_t kMaxRemovedValence = 64;
 
 inline constexpr size_t kFetchedTogether = 16;
 
@@ -57,8 +55,14 @@ struct CollapseChoice {
 class CollapseChooser {
  public:
   CollapseChooser(const CollapsibleMesh& mesh, const std::vector<SimplifyVertex>& vertices,
-                  unsigned balance, SimplifyReport& counts)
-      : mesh_(mesh), vertices_(vertices), balance_(balance), counts_(counts) {}
+                  const SimplifyOptions& options, SimplifyReport& counts)
+      : mesh_(mesh),
+        vertices_(vertices),
+        balance_(options.balance),
+        maxValence_(std::min(options.maxValence, kLargestMaxValence)),
+        counts_(counts) {}
+
+  [[nodiscard]] uint32_t maxValence() const { return maxValence_; }
 
   // Key of the cheapest neighbour whether allowed or not: never above that of choose().
   [[nodiscard]] uint32_t lowerBound(uint32_t removed);
@@ -83,16 +87,17 @@ class CollapseChooser {
   const CollapsibleMesh& mesh_;
   const std::vector<SimplifyVertex>& vertices_;
   unsigned balance_;
+  uint32_t maxValence_;
   SimplifyReport& counts_;
 
   uint32_t size_ = 0;
   uint64_t idBits_ = 0;  // bit v % 64 for each v of the ring
-  std::array<uint32_t, kMaxRemovedValence> ids_{};
-  std::array<HalfEdge, kMaxRemovedValence> halfEdges_;
-  std::array<const SimplifyVertex*, kMaxRemovedValence> at_{};
-  std::array<float, kMaxRemovedValence> costs_{};
-  std::array<Offset, kMaxRemovedValence> offsets_{};  // neighbour - removed
-  std::array<Offset, kMaxRemovedValence> normals_{};  // of face (removed, i, i + 1); 0 if virtual
+  std::array<uint32_t, kLargestMaxValence> ids_{};
+  std::array<HalfEdge, kLargestMaxValence> halfEdges_;
+  std::array<const SimplifyVertex*, kLargestMaxValence> at_{};
+  std::array<float, kLargestMaxValence> costs_{};
+  std::array<Offset, kLargestMaxValence> offsets_{};  // neighbour - removed
+  std::array<Offset, kLargestMaxValence> normals_{};  // of face (removed, i, i + 1); 0 if virtual
 };
 
 }  // namespace meshfront

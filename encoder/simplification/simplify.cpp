@@ -8,6 +8,7 @@
 #include "encoder/simplification/collapse_choice.h"
 #include "encoder/simplification/collapse_queue.h"
 #include "encoder/simplification/collapsible_mesh.h"
+#include "encoder/simplification/end_state.h"
 #include "encoder/simplification/space_filling_order.h"
 
 namespace meshfront {
@@ -45,7 +46,7 @@ class Simplifier {
         realCount_(static_cast<uint32_t>(positions.size())),
         vertexCount_(realCount_ + virtualCount),
         inputIndex_(spaceFillingOrder(positions)),
-        chooser_(mesh_, vertices_, options.balance, result_.report) {
+        chooser_(mesh_, vertices_, options, result_.report) {
     const double share = options.baseFraction > 0 ? std::min(options.baseFraction, 1.0) : 0;
     const double wanted = std::ceil(share * realCount_);
     result_.report.wantedVertices = std::max(kFewestVertices, static_cast<uint32_t>(wanted));
@@ -164,6 +165,9 @@ class Simplifier {
     report.why =
         result_.collapses.size() < planned ? StopReason::noValidCollapse : StopReason::reachedBase;
     report.baseVertices = realCount_ - static_cast<uint32_t>(result_.collapses.size());
+    if (report.why == StopReason::noValidCollapse) {
+      report.endState = sweepEndState(mesh_, vertices_, realCount_, chooser_.maxValence());
+    }
   }
 
   // False for an entry that a smaller one has replaced, or whose vertex has gone.
@@ -213,7 +217,7 @@ class Simplifier {
   // is found out when they come up.
   void reconsider(uint32_t v, const SimplifyVertex& kept) {
     SimplifyVertex& vertex = vertices_[v];
-    if (vertex.state == State::immovable || vertex.valence > kMaxRemovedValence) return;
+    if (vertex.state == State::immovable || vertex.valence > chooser_.maxValence()) return;
     uint32_t key = 0;
     if (vertex.state == State::parked || (vertex.key & kFlipBit) != 0) {
       key = chooser_.lowerBound(v);

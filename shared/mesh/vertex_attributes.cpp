@@ -5,6 +5,18 @@
 
 namespace meshfront {
 
+std::vector<VertexAttributes> packAttributes(std::span<const Colour> colours,
+                                             std::span<const std::array<float, 3>> normals,
+                                             const AttributeLayout& layout) {
+  std::vector<VertexAttributes> out(layout.any() ? std::max(colours.size(), normals.size()) : 0);
+  for (size_t v = 0; v < out.size(); ++v) {
+    if (layout.colours && v < colours.size()) out[v].colour = colours[v];
+    if (layout.normalBits != 0 && v < normals.size())
+      out[v].normal = toOctahedral(normals[v], layout.normalBits);
+  }
+  return out;
+}
+
 OctahedralNormal toOctahedral(const std::array<float, 3>& normal, unsigned bits) {
   const double sum =
       std::abs(double{normal[0]}) + std::abs(double{normal[1]}) + std::abs(double{normal[2]});

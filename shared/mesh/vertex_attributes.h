@@ -3,6 +3,8 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
+#include <vector>
 
 #include "shared/mesh/indexed_mesh.h"
 
@@ -30,6 +32,12 @@ struct VertexAttributes {
 
   friend bool operator==(const VertexAttributes&, const VertexAttributes&) = default;
 };
+
+// What vertices carry, in this layout: both spans are empty or of one length; what the layout lacks
+// is left out. Empty without any attribute.
+[[nodiscard]] std::vector<VertexAttributes> packAttributes(
+    std::span<const Colour> colours, std::span<const std::array<float, 3>> normals,
+    const AttributeLayout& layout);
 
 // `normal` of any length; zero, which has no direction, becomes +z. `bits` as in AttributeLayout.
 [[nodiscard]] OctahedralNormal toOctahedral(const std::array<float, 3>& normal, unsigned bits);

@@ -29,7 +29,10 @@ Result<SelectivelyRefinedMesh> SelectivelyRefinedMesh::fromBase(BaseMesh base) {
     }
     mesh.nodes_.push_back(node);
     mesh.nodeAt_.push_back(tree);
+    if (base.tables.attributes.layout.any())
+      mesh.nodeAttributes_.push_back(isVirtual ? VertexAttributes{} : base.roots[tree].attributes);
   }
+  mesh.attributes_ = mesh.nodeAttributes_;
   for (const Triangle& t : base.triangles) {
     const bool drawn = t[0] < roots && t[1] < roots && t[2] < roots;
     mesh.drawn_.push_back(drawn ? t : Triangle{});
@@ -110,6 +113,12 @@ Result<void> SelectivelyRefinedMesh::apply(NodeIndex index, std::span<const uint
     if (position[i] < 0 || position[i] >= limit) return fail("split: a vertex outside the grid");
   }
 
+  const bool carries = attributeLayout().any();
+  VertexAttributes attributes;
+  if (carries &&
+      !addAttributes(nodeAttributes_[index], record.attributes, attributeLayout(), attributes))
+    return fail("split: a colour or normal out of range");
+
   edges_.ring(node.slot, ring_);
   entries_.clear();
   for (const HalfEdge h : ring_) entries_.push_back(ids_[nodeAt_[edges_.destination(h)]]);
@@ -136,6 +145,10 @@ Result<void> SelectivelyRefinedMesh::apply(NodeIndex index, std::span<const uint
       child.normal = normal;
       child.position = right ? position : node.position;
       nodes_.push_back(child);
+      if (carries) {
+        const VertexAttributes kept = nodeAttributes_[index];
+        nodeAttributes_.push_back(right ? attributes : kept);
+      }
       ids_.push_back(id.child(right));
     }
     nodes_[index].leftChild = first;
@@ -148,6 +161,10 @@ Result<void> SelectivelyRefinedMesh::apply(NodeIndex index, std::span<const uint
   } else {
     positions_[made.vertex] = position;
     nodeAt_[made.vertex] = u + 1;
+  }
+  if (carries) {
+    attributes_.resize(positions_.size());
+    attributes_[made.vertex] = attributes;
   }
   nodeAt_[node.slot] = u;
   nodes_[u].slot = node.slot;
@@ -193,8 +210,9 @@ void SelectivelyRefinedMesh::collapse(NodeIndex index) {
   ++changes_;
 }
 
-SelectivelyRefinedMesh::Snapshot SelectivelyRefinedMesh::snapshot() const {
-  Snapshot out;
+GridMesh SelectivelyRefinedMesh::snapshot() const {
+  GridMesh out;
+  out.layout = attributeLayout();
   std::vector<uint32_t> number(positions_.size(), kNone);
   for (const Triangle& t : drawn_)
     if (t != Triangle{})
@@ -203,6 +221,7 @@ SelectivelyRefinedMesh::Snapshot SelectivelyRefinedMesh::snapshot() const {
     if (number[slot] == kNone) continue;
     number[slot] = static_cast<uint32_t>(out.positions.size());
     out.positions.push_back(positions_[slot]);
+    if (!attributes_.empty()) out.attributes.push_back(attributes_[slot]);
   }
   for (const Triangle& t : drawn_)
     if (t != Triangle{}) out.triangles.push_back({number[t[0]], number[t[1]], number[t[2]]});

@@ -26,6 +26,7 @@
 #include "shared/codec/record.h"
 #include "shared/codec/ring_cut.h"
 #include "shared/hierarchy/node_id.h"
+#include "shared/mesh/grid_mesh.h"
 #include "shared/refinement/half_edge_mesh.h"
 #include "shared/result.h"
 
@@ -83,12 +84,14 @@ class SelectivelyRefinedMesh {
   // Grows with every change; a viewer compares it with the last one it uploaded.
   [[nodiscard]] uint64_t changeCount() const { return changes_; }
 
+  // What vertices carry, and by vertex slot how much; empty if they carry nothing.
+  [[nodiscard]] const AttributeLayout& attributeLayout() const {
+    return base_.tables.attributes.layout;
+  }
+  [[nodiscard]] std::span<const VertexAttributes> attributes() const { return attributes_; }
+
   // The drawn triangles as a plain mesh: used vertices only, in slot order.
-  struct Snapshot {
-    std::vector<GridPosition> positions;
-    std::vector<Triangle> triangles;
-  };
-  [[nodiscard]] Snapshot snapshot() const;
+  [[nodiscard]] GridMesh snapshot() const;
 
  private:
   struct Node {
@@ -121,6 +124,8 @@ class SelectivelyRefinedMesh {
   std::vector<NodeId> ids_;        // by node
   std::vector<NodeIndex> nodeAt_;  // by vertex slot
   std::vector<GridPosition> positions_;
+  std::vector<VertexAttributes> attributes_;      // by vertex slot, where there are any
+  std::vector<VertexAttributes> nodeAttributes_;  // by node, likewise
   HalfEdgeMesh edges_;
   std::vector<NodeIndex> creators_;  // by pair of face slots
   std::vector<Triangle> drawn_;      // by face slot

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <span>
 #include <string>
@@ -26,9 +27,10 @@ struct PackContent {
 // The digest over base, chunk index and chunks (and quantisation), the same on every machine.
 [[nodiscard]] std::string revisionOf(const PackContent& content);
 
-// Atomic: `path` either keeps its old content or gets the new one whole.
-[[nodiscard]] Result<MeshMetadata> writePack(const std::filesystem::path& path,
-                                             PackContent content);
+// Atomic: `path` either keeps its old content or gets the new one whole. Once `cancelled` returns
+// true, which is asked now and then, it gives up with an Error and nothing is left behind.
+[[nodiscard]] Result<MeshMetadata> writePack(const std::filesystem::path& path, PackContent content,
+                                             const std::function<bool()>& cancelled = {});
 
 // An open pack; thread-safe for reading. Views stay valid as long as the Pack lives.
 class Pack {

@@ -69,7 +69,12 @@ tl::unexpected<Error> systemFailure(const char* what, int error) {
               std::string("pack: ") + what + ": " + std::generic_category().message(error));
 }
 
-Result<void> writeEntries(const std::string& path, const Entries& entries) {
+tl::unexpected<Error> interrupted() {
+  return fail(ErrorCode::unavailable, "pack: interrupted; nothing was written");
+}
+
+Result<void> writeEntries(const std::string& path, const Entries& entries,
+                          const std::function<bool()>& cancelled) {
   struct Environment {
     ~Environment() {
       if (handle != nullptr) mdb_env_close(handle);
@@ -101,6 +106,10 @@ Result<void> writeEntries(const std::string& path, const Entries& entries) {
     MDB_val key{it->first.size(), const_cast<char*>(it->first.data())};
     MDB_val value{it->second.size(), const_cast<uint8_t*>(it->second.data())};
     status = mdb_put(transaction, database, &key, &value, MDB_APPEND);
+    if (status == 0 && cancelled && cancelled()) {
+      mdb_txn_abort(transaction);
+      return interrupted();
+    }
   }
   if (status != 0) {
     mdb_txn_abort(transaction);
@@ -137,7 +146,8 @@ std::string revisionOf(const PackContent& content) {
   return digest.hex(kRevisionBytes);
 }
 
-Result<MeshMetadata> writePack(const std::filesystem::path& path, PackContent content) {
+Result<MeshMetadata> writePack(const std::filesystem::path& path, PackContent content,
+                               const std::function<bool()>& cancelled) {
   MeshMetadata& metadata = content.metadata;
   if (!isMeshName(metadata.name))
     return fail("pack: the mesh's name must be 1 to 64 of A-Z a-z 0-9 . _ -, no dot in front");
@@ -170,8 +180,9 @@ Result<MeshMetadata> writePack(const std::filesystem::path& path, PackContent co
   ::close(handle);
   if (modeStatus != 0) return systemFailure("its mode cannot be set", errno);
 
-  if (auto written = writeEntries(temporary.path, entries); !written)
+  if (auto written = writeEntries(temporary.path, entries, cancelled); !written)
     return tl::unexpected(written.error());
+  if (cancelled && cancelled()) return interrupted();
   if (::rename(temporary.path.c_str(), path.c_str()) != 0)
     return systemFailure("the finished file cannot be moved to its name", errno);
   temporary.path.clear();

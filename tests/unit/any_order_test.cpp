@@ -16,11 +16,11 @@
 namespace meshfront {
 namespace {
 
-ExpectedMesh expectedOf(const IndexedMesh& mesh, unsigned bits) {
+GridMesh expectedOf(const IndexedMesh& mesh, unsigned bits) {
   CleaningReport report;
   const ClosedMesh closed = closeMesh(mesh, report).value();
   const Quantization grid = quantizationFor(closed.positions, bits);
-  ExpectedMesh out;
+  GridMesh out;
   for (const auto& p : closed.positions) out.positions.push_back(grid.toGrid(p));
   out.triangles.assign(closed.triangles.begin(),
                        closed.triangles.begin() + static_cast<ptrdiff_t>(closed.realTriangleCount));

@@ -60,6 +60,20 @@ TEST(Pack, LeavesNothingBesideTheFile) {
   EXPECT_EQ(filesIn(folder.path()), 1U);
 }
 
+TEST(Pack, GivesUpWithoutATrace) {
+  const SyntheticMesh mesh = makeSyntheticMesh();
+  // Asked once after each entry and once before the file gets its name.
+  const int questions = static_cast<int>(mesh.content.chunks.size()) + 5;
+  for (int last = 0; last <= questions; ++last) {
+    const TemporaryFolder folder;
+    int asked = 0;
+    const auto written =
+        writePack(folder / "a.pack", mesh.content, [&] { return asked++ == last; });
+    EXPECT_EQ(written.has_value(), last == questions);
+    EXPECT_EQ(filesIn(folder.path()), last == questions ? 1U : 0U);
+  }
+}
+
 TEST(Pack, KeepsTheOldFileOpenWhenReplaced) {
   const TemporaryFolder folder;
   const SyntheticMesh first = makeSyntheticMesh({.seed = 1});

@@ -120,6 +120,42 @@ class FaceSetModel {
     }
     return false;
   }
+  // What sweepEndState() counts, with no limit on valences.
+  [[nodiscard]] EndState endState() const {
+    EndState out;
+    int64_t euler = 0;
+    std::vector<bool> seen(faces_.size());
+    for (uint32_t start = 0; start < faces_.size(); ++start) {
+      if (faces_[start].empty() || seen[start]) continue;
+      std::set<uint32_t> part;
+      std::vector<uint32_t> waiting{start};
+      while (!waiting.empty()) {
+        const uint32_t v = waiting.back();
+        waiting.pop_back();
+        if (!part.insert(v).second) continue;
+        seen[v] = true;
+        for (const uint32_t w : neighbours(v)) waiting.push_back(w);
+      }
+      ++out.components;
+      if (part.size() == 4) ++out.smallestComponents;
+      size_t halfEdges = 0;
+      for (const uint32_t v : part) {
+        halfEdges += neighbours(v).size();
+        if (v >= realCount_) continue;
+        for (const uint32_t w : neighbours(v)) {
+          ++out.directions;
+          const std::string why = whyRefused({w, v});
+          if (part.size() == 4) ++out.smallestComponent;
+          if (part.size() == 4) continue;
+          if (why == "virtual vertex") ++out.virtualVertex;
+          if (why == "link condition") ++out.link;
+        }
+      }
+      euler += static_cast<int64_t>(part.size()) - static_cast<int64_t>(halfEdges / 6);
+    }
+    out.handles = static_cast<uint64_t>((2 * static_cast<int64_t>(out.components) - euler) / 2);
+    return out;
+  }
   [[nodiscard]] unsigned maxHeight() const {
     return *std::max_element(heights_.begin(), heights_.end());
   }
@@ -141,6 +177,19 @@ class FaceSetModel {
   std::vector<unsigned> heights_;
 };
 
+void expectSame(const EndState& actual, const EndState& expected) {
+  EXPECT_EQ(actual.directions, expected.directions);
+  EXPECT_EQ(actual.smallestComponent, expected.smallestComponent);
+  EXPECT_EQ(actual.virtualVertex, expected.virtualVertex);
+  EXPECT_EQ(actual.components, expected.components);
+  EXPECT_EQ(actual.smallestComponents, expected.smallestComponents);
+  EXPECT_EQ(actual.handles, expected.handles);
+  // The model names one rule only, and not always the link condition first.
+  if (actual.depth == 0) {
+    EXPECT_EQ(actual.link, expected.link);
+  }
+}
+
 void expectValid(const Input& input, const Simplification& result, const std::string& name) {
   SCOPED_TRACE(name);
   FaceSetModel model(input);
@@ -157,6 +206,7 @@ void expectValid(const Input& input, const Simplification& result, const std::st
     EXPECT_EQ(report.why, StopReason::noValidCollapse);
     EXPECT_GT(report.baseVertices, report.wantedVertices);
     EXPECT_FALSE(model.canCollapse());
+    expectSame(report.endState, model.endState());
   }
 }
 
@@ -223,6 +273,92 @@ TEST(Simplify, KeepsTheGenusOfATorus) {
   expectValid(input, result, "torus");
   EXPECT_GE(result.report.baseVertices, 7U);  // the smallest triangulation there is
   EXPECT_LE(result.report.baseVertices, 12U);
+}
+
+TEST(Simplify, TellsThatTopologyHoldsWhatIsLeft) {
+  IndexedMesh mesh = torus(24, 12);
+  for (int i = 0; i < 5; ++i) appendMesh(mesh, tetrahedron(), {10.0 + 3 * i, 0, 0});
+  const EndState end = simplify(closed(mesh), options(0, 1)).report.endState;
+  EXPECT_EQ(end.components, 6U);
+  EXPECT_EQ(end.smallestComponents, 5U);
+  EXPECT_EQ(end.smallestComponent, 5U * 12);
+  EXPECT_EQ(end.handles, 1U);
+  EXPECT_GT(end.link, 0U);
+  EXPECT_EQ(end.link + end.smallestComponent, end.directions);
+  EXPECT_EQ(end.depthAlone + end.valenceAlone, 0U);
+}
+
+TEST(Simplify, TellsThatDepthHoldsWhatIsLeft) {
+  // A three-sided tube whose rings stand ever farther apart: from the dense end on, without
+  // balance, one tree swallows one vertex after another.
+  constexpr uint32_t kRings = 250;
+  Input input;
+  double at = 0;
+  for (uint32_t ring = 0; ring < kRings; ++ring) {
+    const auto x = static_cast<int32_t>(std::lround(at));
+    input.positions.insert(input.positions.end(), {{x, 0, 0}, {x, 900000, 0}, {x, 0, 900000}});
+    at += 10 * std::pow(1.03, ring);
+    for (uint32_t side = 0; ring > 0 && side < 3; ++side) {
+      const uint32_t a = 3 * ring + side;
+      const uint32_t b = 3 * ring + (side + 1) % 3;
+      input.triangles.push_back({a, b, b - 3});
+      input.triangles.push_back({a, b - 3, a - 3});
+    }
+  }
+  const uint32_t last = 3 * (kRings - 1);
+  input.triangles.push_back({0, 1, 2});
+  input.triangles.push_back({last, last + 2, last + 1});
+  input.realTriangleCount = input.triangles.size();
+  const SimplifyReport report = simplify(input, options(0, 0)).report;
+  ASSERT_EQ(report.why, StopReason::noValidCollapse);
+  EXPECT_EQ(report.maxHeight, kMaxDepth);
+  EXPECT_GT(report.endState.depth, 0U);
+  EXPECT_GT(report.endState.depthAlone, 0U);
+  EXPECT_EQ(simplify(input, options(0, 2)).report.why, StopReason::reachedBase);
+}
+
+TEST(Simplify, TellsThatValenceHoldsWhatIsLeft) {
+  const Input input = closed(torus(24, 12));  // all vertices have six neighbours
+  SimplifyOptions limited = options(0, 1);
+  limited.maxValence = 5;
+  const SimplifyReport report = simplify(input, limited).report;
+  ASSERT_EQ(report.why, StopReason::noValidCollapse);
+  EXPECT_EQ(report.baseVertices, input.positions.size());
+  const EndState& end = report.endState;
+  EXPECT_EQ(end.directions, 6 * input.positions.size());
+  EXPECT_EQ(end.valence, end.directions);
+  EXPECT_EQ(end.valenceAlone, end.directions);
+  EXPECT_EQ(end.valenceNeeded, 6U);
+  EXPECT_EQ(end.link + end.depth, 0U);
+  limited.maxValence = 6;
+  EXPECT_LT(simplify(input, limited).report.baseVertices, input.positions.size() / 4);
+}
+
+TEST(Simplify, TakesHubsIfAllowedTo) {
+  // A cone. A hub in the flat bottom, close to the outline, is the cheapest to remove.
+  constexpr uint32_t kAround = 200;
+  Input input;
+  for (uint32_t i = 0; i < kAround; ++i) {
+    const double angle = 2 * 3.14159265358979 * i / kAround;
+    input.positions.push_back({static_cast<int>(std::lround(8000 + 8000 * std::cos(angle))),
+                               static_cast<int>(std::lround(8000 + 8000 * std::sin(angle))), 0});
+  }
+  input.positions.push_back({15990, 8000, 0});
+  input.positions.push_back({8000, 8000, 8000});
+  for (uint32_t i = 0; i < kAround; ++i) {
+    const uint32_t next = (i + 1) % kAround;
+    input.triangles.push_back({next, i, kAround});
+    input.triangles.push_back({i, next, kAround + 1});
+  }
+  input.realTriangleCount = input.triangles.size();
+  for (const uint32_t limit : {64U, 256U, kLargestMaxValence, 5000U}) {
+    SimplifyOptions wide = options(0, 1);
+    wide.maxValence = limit;
+    const Simplification result = simplify(input, wide);
+    expectValid(input, result, "limit " + std::to_string(limit));
+    ASSERT_FALSE(result.collapses.empty());
+    EXPECT_EQ(result.collapses[0].removed == kAround, limit >= kAround);
+  }
 }
 
 TEST(Simplify, IsTheSameEachTime) {
