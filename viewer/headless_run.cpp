@@ -36,10 +36,17 @@ ReceiverOptions receiverOptions(const ViewOptions& options) {
   return result;
 }
 
+DrawStyle styleOf(const ViewOptions& options) {
+  DrawStyle style;
+  style.colours = options.colours;
+  return style;
+}
+
 class HeadlessRun {
  public:
   HeadlessRun(const ViewOptions& options, std::string renderer)
       : options_(options),
+        style_(styleOf(options)),
         renderer_(std::move(renderer)),
         target_(options.until.kind == Kind::psnr ? options.until.decibels : options.psnrTarget),
         receiver_(options.url, receiverOptions(options), http_) {}
@@ -99,7 +106,7 @@ class HeadlessRun {
     if (!picture) return tl::unexpected(picture.error());
     picture_.emplace(std::move(*picture));
     if (!options_.reference) return {};
-    auto reference = drawReference(*options_.reference, *picture_, camera_);
+    auto reference = drawReference(*options_.reference, *picture_, camera_, options_.colours);
     if (!reference) return tl::unexpected(reference.error());
     reference_ = std::move(*reference);
     return {};
@@ -125,7 +132,8 @@ class HeadlessRun {
   }
 
   Result<void> measure() {
-    if (Result<void> drawn = picture_->draw(*receiver_.mesh(), camera_, {}); !drawn) return drawn;
+    if (Result<void> drawn = picture_->draw(*receiver_.mesh(), camera_, style_); !drawn)
+      return drawn;
     const Result<double> psnr = peakSignalToNoise(picture_->read(), *reference_);
     if (!psnr) return tl::unexpected(psnr.error());
     psnr_ = std::min(*psnr, kIdenticalPsnr);
@@ -137,7 +145,8 @@ class HeadlessRun {
       if (Result<void> measured = measure(); !measured) return measured;
     }
     if (options_.screenshot) {
-      if (Result<void> drawn = picture_->draw(*receiver_.mesh(), camera_, {}); !drawn) return drawn;
+      if (Result<void> drawn = picture_->draw(*receiver_.mesh(), camera_, style_); !drawn)
+        return drawn;
       if (Result<void> written = writePng(picture_->read(), *options_.screenshot); !written)
         return written;
     }
@@ -182,6 +191,7 @@ class HeadlessRun {
   }
 
   const ViewOptions& options_;
+  DrawStyle style_;
   const std::string renderer_;
   const std::optional<double> target_;  // dB
   const std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();

@@ -15,8 +15,8 @@ Result<MeshPicture> MeshPicture::create(PixelSize size, const Quantization& quan
 }
 
 Result<void> MeshPicture::upload(const SelectivelyRefinedMesh& mesh) {
-  const Result<bool> uploaded =
-      gpuMesh_.update({quantization_, mesh.positions(), mesh.drawnCorners(), mesh.changeCount()});
+  const Result<bool> uploaded = gpuMesh_.update(
+      {quantization_, mesh.positions(), mesh.drawnCorners(), mesh.changeCount(), mesh.coloured()});
   if (!uploaded) return tl::unexpected(uploaded.error());
   return {};
 }
@@ -36,11 +36,12 @@ Result<void> MeshPicture::draw(const SelectivelyRefinedMesh& mesh, const Camera&
   return {};
 }
 
-Result<Picture> MeshPicture::drawOther(const MeshArrays& mesh, const Camera& camera) {
+Result<Picture> MeshPicture::drawOther(const MeshArrays& mesh, const Camera& camera,
+                                       const DrawStyle& style) {
   GpuMesh other;
   const Result<bool> uploaded = other.update(mesh);
   if (!uploaded) return tl::unexpected(uploaded.error());
-  renderer_.draw(target_, other, camera, bounds_, {});
+  renderer_.draw(target_, other, camera, bounds_, style);
   return target_.readPicture();
 }
 

@@ -35,7 +35,8 @@ class MeshPicture {
   // Of the last draw().
   [[nodiscard]] Picture read() const { return target_.readPicture(); }
   // Draws another mesh the same way into the same target.
-  [[nodiscard]] Result<Picture> drawOther(const MeshArrays& mesh, const Camera& camera);
+  [[nodiscard]] Result<Picture> drawOther(const MeshArrays& mesh, const Camera& camera,
+                                          const DrawStyle& style);
 
   Result<void> resize(PixelSize size) { return target_.resize(size); }
   [[nodiscard]] const RenderTarget& target() const { return target_; }

@@ -27,7 +27,7 @@ std::vector<uint32_t> firstAtSamePlace(const std::vector<std::array<double, 3>>&
 }  // namespace
 
 Result<Picture> drawReference(const std::filesystem::path& meshFile, MeshPicture& picture,
-                              const Camera& camera) {
+                              const Camera& camera, bool colours) {
   Result<IndexedMesh> mesh = readMesh(meshFile);
   if (!mesh) return tl::unexpected(mesh.error());
   const std::vector<uint32_t> first = firstAtSamePlace(mesh->positions);
@@ -37,7 +37,11 @@ Result<Picture> drawReference(const std::filesystem::path& meshFile, MeshPicture
   std::vector<GridPosition> grid;
   grid.reserve(mesh->positions.size());
   for (const auto& position : mesh->positions) grid.push_back(fine.toGrid(position));
-  return picture.drawOther({fine, grid, mesh->triangles, 1}, camera);
+  // Colours as cleaning gives them: those of the first of the vertices at one place.
+  const auto coloured = packAttributes(mesh->colours, {}, {true, 0});
+  DrawStyle style;
+  style.colours = colours;
+  return picture.drawOther({fine, grid, mesh->triangles, 1, coloured}, camera, style);
 }
 
 }  // namespace meshfront

@@ -12,6 +12,7 @@
 namespace meshfront {
 
 [[nodiscard]] Result<Picture> drawReference(const std::filesystem::path& meshFile,
-                                            MeshPicture& picture, const Camera& camera);
+                                            MeshPicture& picture, const Camera& camera,
+                                            bool colours);
 
 }  // namespace meshfront

@@ -95,6 +95,7 @@ ParsedOptions parseViewOptions(int argc, char** argv) {
                  "dB; prints what it took to get there (checked after each answer)")
       ->check(CLI::Range(0.0, 100.0).description(""));
   app.add_flag("--json", options.json, "print the summary as JSON");
+  app.add_flag("!--no-colours", options.colours, "draw clay even where the mesh has colours");
   app.add_flag("--count-on-cpu", options.countOnCpu,
                "count pixels on the CPU: the reference way, with equal results");
   app.add_option("--timeout", options.timeout, "headless: seconds until giving up; 0: never")

@@ -31,6 +31,7 @@ struct ViewOptions {
   std::optional<std::filesystem::path> reference;
   std::optional<double> psnrTarget;  // dB
   bool json = false;
+  bool colours = true;  // show the mesh's own, if it has any
   bool countOnCpu = false;
   double timeout = 0;  // seconds; 0 = none
 };

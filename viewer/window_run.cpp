@@ -53,6 +53,7 @@ class WindowRun {
     if (Result<void> connected = connect(); !connected || !receiver_.mesh()) return connected;
     const MeshMetadata& metadata = *receiver_.metadata();
     WindowOptions windowOptions;
+    windowOptions.style.colours = options_.colours;
     windowOptions.title = metadata.name + " - meshfront";
     windowOptions.size = options_.size;
     windowOptions.camera = options_.camera;
@@ -119,7 +120,7 @@ class WindowRun {
     if (receiver_.wantsRanking() && countedAt_ == mesh.changeCount()) receiver_.rank(pixels_);
     if (receiver_.state() == ReceiverState::degraded) tryToResume();
     return {receiver_.metadata()->quantization, mesh.positions(), mesh.drawnCorners(),
-            mesh.changeCount()};
+            mesh.changeCount(), mesh.coloured()};
   }
 
   void tryToResume() {

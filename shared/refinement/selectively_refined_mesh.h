@@ -89,6 +89,10 @@ class SelectivelyRefinedMesh {
     return base_.tables.attributes.layout;
   }
   [[nodiscard]] std::span<const VertexAttributes> attributes() const { return attributes_; }
+  // The same if there are colours among it, else empty.
+  [[nodiscard]] std::span<const VertexAttributes> coloured() const {
+    return attributeLayout().colours ? attributes() : std::span<const VertexAttributes>();
+  }
 
   // The drawn triangles as a plain mesh: used vertices only, in slot order.
   [[nodiscard]] GridMesh snapshot() const;

@@ -86,6 +86,41 @@ TEST_F(PixelCounting, SaysWhatDraws) {
   RecordProperty("gl", context_->description());
 }
 
+TEST_F(PixelCounting, DrawsTheMeshsOwnColoursUnlessToldNotTo) {
+  const GridShape shape = planeShape(1);
+  VertexAttributes green;
+  green.colour = {20, 240, 30, 255};
+  const std::vector<VertexAttributes> coloured(shape.positions.size(), green);
+  MeshArrays arrays = arraysOf(shape);
+  arrays.coloured = coloured;
+  GpuMesh mesh;
+  ASSERT_TRUE(mesh.update(arrays).value());
+  EXPECT_TRUE(mesh.hasColours());
+  auto drawn = target({16, 16});
+  const auto middle = [&](const DrawStyle& style) {
+    renderer_->draw(drawn, mesh, planeCamera(), boundsOf(shape), style);
+    const Picture picture = drawn.readPicture();
+    const size_t at = 3 * (size_t{16} * 8 + 8);
+    return std::array<int, 3>{picture.rgb[at], picture.rgb[at + 1], picture.rgb[at + 2]};
+  };
+  const auto own = middle({});
+  EXPECT_GT(own[1], 2 * own[0]);
+  EXPECT_GT(own[1], 2 * own[2]);
+  DrawStyle clayStyle;
+  clayStyle.colours = false;
+  const auto clay = middle(clayStyle);
+  EXPECT_GT(clay[0], clay[1]);
+
+  // Without colours again, and with too few of them.
+  arrays.coloured = {};
+  arrays.changeCount = 2;
+  ASSERT_TRUE(mesh.update(arrays).value());
+  EXPECT_EQ(middle({}), clay);
+  arrays.coloured = std::span(coloured).first(2);
+  arrays.changeCount = 3;
+  EXPECT_FALSE(mesh.update(arrays));
+}
+
 TEST_F(PixelCounting, SquareThatFillsThePictureCountsEveryPixel) {
   const GridShape shape = planeShape(1);
   GpuMesh mesh;

@@ -73,6 +73,9 @@ void ViewControls::key(char letter, PixelSize picture) {
     case 'W':
       wireframe_ = !wireframe_;
       break;
+    case 'C':
+      colours_ = !colours_;
+      break;
     case 'H':
       helpShown_ = !helpShown_;
       break;

@@ -1,7 +1,7 @@
 // What mouse and keys do to a view, apart from any window system: the window feeds it, tests too.
 //
 // left drag: orbit; middle, right or shift + left drag: pan; wheel: zoom to the cursor;
-// F fit, R reset, S shading, W wireframe, H help, Q quit.
+// F fit, R reset, S shading, W wireframe, C colours, H help, Q quit.
 #pragma once
 
 #include <glm/vec2.hpp>
@@ -23,10 +23,12 @@ class ViewControls {
   [[nodiscard]] const Bounds& bounds() const { return bounds_; }
   [[nodiscard]] bool flatShading() const { return flatShading_; }
   [[nodiscard]] bool wireframe() const { return wireframe_; }
+  [[nodiscard]] bool colours() const { return colours_; }
   [[nodiscard]] bool helpShown() const { return helpShown_; }
   [[nodiscard]] bool quitAsked() const { return quitAsked_; }
   void setFlatShading(bool on) { flatShading_ = on; }
   void setWireframe(bool on) { wireframe_ = on; }
+  void setColours(bool on) { colours_ = on; }
   void fit(PixelSize picture) { fitTo(camera_, bounds_, picture.aspect()); }
   void reset() { camera_ = start_; }
 
@@ -51,6 +53,7 @@ class ViewControls {
   glm::dvec2 last_{0};
   bool flatShading_ = false;
   bool wireframe_ = false;
+  bool colours_ = true;
   bool helpShown_ = false;
   bool quitAsked_ = false;
 };

@@ -12,6 +12,7 @@ namespace {
 
 constexpr GLuint kPositionAttribute = 0;
 constexpr GLuint kNormalAttribute = 1;
+constexpr GLuint kColourAttribute = 2;
 
 GlBuffer newBuffer() {
   GLuint name = 0;
@@ -24,12 +25,15 @@ GlBuffer newBuffer() {
 GpuMesh::GpuMesh() {
   positions_.buffer = newBuffer();
   normals_.buffer = newBuffer();
+  colours_.buffer = newBuffer();
   indices_.buffer = newBuffer();
   GLuint vao = 0;
   glCreateVertexArrays(1, &vao);
   vertexArray_ = GlVertexArray(vao);
   glVertexArrayVertexBuffer(vao, 0, positions_.buffer.name(), 0, sizeof(GridPosition));
   glVertexArrayVertexBuffer(vao, 1, normals_.buffer.name(), 0, sizeof(PackedNormal));
+  glVertexArrayVertexBuffer(vao, 2, colours_.buffer.name(), offsetof(VertexAttributes, colour),
+                            sizeof(VertexAttributes));
   glVertexArrayElementBuffer(vao, indices_.buffer.name());
   glEnableVertexArrayAttrib(vao, kPositionAttribute);
   glVertexArrayAttribIFormat(vao, kPositionAttribute, 3, GL_INT, 0);
@@ -37,6 +41,9 @@ GpuMesh::GpuMesh() {
   glEnableVertexArrayAttrib(vao, kNormalAttribute);
   glVertexArrayAttribFormat(vao, kNormalAttribute, 3, GL_SHORT, GL_TRUE, 0);
   glVertexArrayAttribBinding(vao, kNormalAttribute, 1);
+  // Switched on for meshes that have colours.
+  glVertexArrayAttribFormat(vao, kColourAttribute, 4, GL_UNSIGNED_BYTE, GL_TRUE, 0);
+  glVertexArrayAttribBinding(vao, kColourAttribute, 2);
 }
 
 Result<void> GpuMesh::Store::write(std::span<const std::byte> bytes) {
@@ -69,9 +76,13 @@ Result<bool> GpuMesh::update(const MeshArrays& mesh) {
   if (mesh.positions.size() > INT32_MAX || mesh.corners.size() > INT32_MAX / 3) {
     return fail(ErrorCode::tooLarge, "more than 715 million triangles cannot be drawn at once");
   }
+  if (!mesh.coloured.empty() && mesh.coloured.size() != mesh.positions.size())
+    return fail("the mesh has " + std::to_string(mesh.coloured.size()) + " colours for " +
+                std::to_string(mesh.positions.size()) + " vertices");
   computeVertexNormals(mesh.positions, mesh.corners, normalScratch_);
   for (auto written : {positions_.write(std::as_bytes(mesh.positions)),
                        normals_.write(std::as_bytes(std::span(normalScratch_))),
+                       colours_.write(std::as_bytes(mesh.coloured)),
                        indices_.write(std::as_bytes(mesh.corners))}) {
     if (!written) {
       changeCount_.reset();
@@ -81,6 +92,9 @@ Result<bool> GpuMesh::update(const MeshArrays& mesh) {
     }
   }
   corners_.assign(mesh.corners.begin(), mesh.corners.end());
+  hasColours_ = !mesh.coloured.empty();
+  (hasColours_ ? glEnableVertexArrayAttrib : glDisableVertexArrayAttrib)(vertexArray_.name(),
+                                                                         kColourAttribute);
   quantization_ = mesh.quantization;
   vertexCount_ = mesh.positions.size();
   triangleCount_ = mesh.corners.size();
@@ -89,7 +103,7 @@ Result<bool> GpuMesh::update(const MeshArrays& mesh) {
 }
 
 size_t GpuMesh::byteCount() const {
-  return positions_.capacity + normals_.capacity + indices_.capacity;
+  return positions_.capacity + normals_.capacity + colours_.capacity + indices_.capacity;
 }
 
 bool GpuMesh::fitsShaderStorage() const {

@@ -13,6 +13,7 @@
 
 #include "shared/mesh/indexed_mesh.h"
 #include "shared/mesh/quantization.h"
+#include "shared/mesh/vertex_attributes.h"
 #include "shared/result.h"
 #include "viewer/gl/gl_object.h"
 #include "viewer/gl/vertex_normals.h"
@@ -25,6 +26,8 @@ struct MeshArrays {
   std::span<const GridPosition> positions;  // by vertex slot
   std::span<const Triangle> corners;        // by face slot, vertex slots; all equal = not drawn
   uint64_t changeCount = 0;                 // equal = the arrays are as they were
+  // By vertex slot, for their colours (sRGB; alpha is not drawn); empty: the mesh has none.
+  std::span<const VertexAttributes> coloured{};
 };
 
 class GpuMesh {
@@ -41,7 +44,8 @@ class GpuMesh {
   [[nodiscard]] const Quantization& quantization() const { return quantization_; }
   [[nodiscard]] size_t vertexCount() const { return vertexCount_; }
   [[nodiscard]] size_t triangleCount() const { return triangleCount_; }  // undrawn slots included
-  [[nodiscard]] size_t byteCount() const;                                // on the GPU, capacity
+  [[nodiscard]] bool hasColours() const { return hasColours_; }
+  [[nodiscard]] size_t byteCount() const;  // on the GPU, capacity
   // The corners last uploaded, for counting on the CPU.
   [[nodiscard]] std::span<const Triangle> corners() const { return corners_; }
 
@@ -60,12 +64,14 @@ class GpuMesh {
   };
   Store positions_;
   Store normals_;
+  Store colours_;
   Store indices_;
   GlVertexArray vertexArray_;
   Quantization quantization_;
   std::optional<uint64_t> changeCount_;
   size_t vertexCount_ = 0;
   size_t triangleCount_ = 0;
+  bool hasColours_ = false;
   std::vector<Triangle> corners_;
   std::vector<PackedNormal> normalScratch_;
 };

@@ -48,6 +48,7 @@ MeshRenderer::Program::Program(GlProgram linked) : program(std::move(linked)) {
   clipFromGrid = glGetUniformLocation(program.name(), "clipFromGrid");
   viewFromGrid = glGetUniformLocation(program.name(), "viewFromGrid");
   flatShading = glGetUniformLocation(program.name(), "flatShading");
+  colours = glGetUniformLocation(program.name(), "colours");
   halfPicture = glGetUniformLocation(program.name(), "halfPicture");
 }
 
@@ -113,6 +114,8 @@ void MeshRenderer::draw(RenderTarget& target, const GpuMesh& mesh, const Camera&
   glClearNamedFramebufferfv(target.framebuffer(), GL_COLOR, 0, background.data());
   const Program& program = style.wireframe && mesh.fitsShaderStorage() ? wireframe_ : shaded_;
   glProgramUniform1i(program.program.name(), program.flatShading, style.flatShading ? 1 : 0);
+  glProgramUniform1i(program.program.name(), program.colours,
+                     style.colours && mesh.hasColours() ? 1 : 0);
   drawWith(program, target, mesh, Projection::fit(camera, bounds, target.size().aspect()));
 }
 

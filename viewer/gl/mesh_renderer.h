@@ -1,4 +1,5 @@
-// Draws a mesh into a RenderTarget: clay under a head light, both sides, smooth or flat, with or
+// Draws a mesh into a RenderTarget: clay or its own colours under a head
+// light, both sides, smooth or flat, with or
 // without its edges. The colour of a vertex's surroundings depends on the triangles alone, not on
 // their order: a streamed mesh that is complete gives the reference mesh's picture.
 //
@@ -22,6 +23,7 @@ namespace meshfront {
 
 struct DrawStyle {
   bool flatShading = false;
+  bool colours = true;     // the mesh's own where it has any, else clay
   bool wireframe = false;  // left out of meshes beyond the driver's storage blocks (128 MB or more)
   std::array<float, 3> background = {0.90F, 0.905F, 0.915F};  // sRGB, 0 .. 1
 
@@ -46,6 +48,7 @@ class MeshRenderer {
     int clipFromGrid = -1;
     int viewFromGrid = -1;
     int flatShading = -1;
+    int colours = -1;
     int halfPicture = -1;
     explicit Program(GlProgram linked);
   };

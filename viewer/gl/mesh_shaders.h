@@ -7,12 +7,15 @@ namespace meshfront {
 inline constexpr char kMeshVertexShader[] = R"(#version 450 core
 layout(location = 0) in ivec3 position;
 layout(location = 1) in vec3 normal;
+layout(location = 2) in vec3 own;  // colour, sRGB
 uniform ivec3 anchor;
 uniform mat4 clipFromGrid;  // from grid steps relative to the anchor
 uniform mat4 viewFromGrid;
 out vec3 viewPosition;
 out vec3 viewNormal;
+out vec3 ownColour;
 void main() {
+  ownColour = own;
   vec4 p = vec4(vec3(position - anchor), 1.0);
   gl_Position = clipFromGrid * p;
   viewPosition = (viewFromGrid * p).xyz;
@@ -20,12 +23,15 @@ void main() {
 }
 )";
 
-// Clay under a light that the viewer carries: a wide key light from above the left shoulder, a
-// weak fill from the other side, and a sky that is brighter than the ground.
+// Clay, or the mesh's own colours, under a light that the viewer carries: a wide key light from
+// above the left shoulder, a weak fill from the other side, and a sky that is brighter than the
+// ground.
 inline constexpr char kMeshFragmentShader[] = R"(
 in vec3 viewPosition;
 in vec3 viewNormal;
+in vec3 ownColour;
 uniform bool flatShading;
+uniform bool colours;
 layout(location = 0) out vec4 colour;
 layout(location = 1) out uint item;
 
@@ -43,6 +49,11 @@ vec3 surfaceNormal() {
   return viewNormal * inversesqrt(length2) * (gl_FrontFacing ? 1.0 : -1.0);
 }
 
+vec3 decoded(vec3 srgb) {
+  return mix(srgb / 12.92, pow((srgb + 0.055) / 1.055, vec3(2.4)),
+             greaterThan(srgb, vec3(0.04045)));
+}
+
 vec3 shaded(vec3 n) {
   vec3 toEye = normalize(-viewPosition);
   vec3 key = normalize(kKeyDirection);
@@ -52,7 +63,8 @@ vec3 shaded(vec3 n) {
   vec3 light = sky + keyed * vec3(0.98, 0.94, 0.88) + filled * vec3(0.10, 0.115, 0.15);
   float gloss = pow(max(dot(n, normalize(key + toEye)), 0.0), 32.0) * 0.06;
   float rim = pow(1.0 - clamp(dot(n, toEye), 0.0, 1.0), 4.0) * 0.06;
-  return kClay * light + gloss + rim;
+  vec3 surface = colours ? decoded(ownColour) : kClay;
+  return surface * light + gloss + rim;
 }
 
 vec3 encoded(vec3 linear) {

@@ -35,7 +35,7 @@ void drawHelp() {
       "left drag            orbit\n"
       "middle, right drag   pan (or shift + left)\n"
       "wheel                zoom to the cursor\n"
-      "F fit   R reset   S shading   W wireframe\n"
+      "F fit   R reset   S shading   W wireframe   C colours\n"
       "H help  Q, Esc quit");
 }
 
@@ -87,6 +87,11 @@ void StatusPanel::draw(const std::vector<std::string>& lines, ViewControls& cont
   ImGui::SameLine();
   if (ImGui::Checkbox("wireframe", &edges)) {
     controls.setWireframe(edges);
+  }
+  ImGui::SameLine();
+  bool colours = controls.colours();
+  if (ImGui::Checkbox("colours", &colours)) {
+    controls.setColours(colours);
   }
   ImGui::SameLine();
   if (ImGui::Button("fit")) {

@@ -185,6 +185,7 @@ Result<void> ViewerWindow::State::turn(const WindowCallbacks& callbacks) {
   DrawStyle style = options.style;
   style.flatShading = controls->flatShading();
   style.wireframe = controls->wireframe();
+  style.colours = controls->colours();
   const bool viewChanged = drawnCamera != controls->camera() || drawnSize != picture;
   if (viewChanged || *uploaded || style != drawnStyle) {
     renderer->draw(*target, *mesh, controls->camera(), options.bounds, style);
@@ -255,6 +256,7 @@ Result<ViewerWindow> ViewerWindow::open(const WindowOptions& options) {
                           options.bounds);
   state->controls->setFlatShading(options.style.flatShading);
   state->controls->setWireframe(options.style.wireframe);
+  state->controls->setColours(options.style.colours);
   state->installCallbacks();
   state->panel.emplace(state->window.handle);  // its callbacks go on to ours
   return ViewerWindow(std::move(state));
