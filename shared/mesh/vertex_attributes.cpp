@@ -17,10 +17,12 @@ std::vector<VertexAttributes> packAttributes(std::span<const Colour> colours,
   return out;
 }
 
-OctahedralNormal toOctahedral(const std::array<float, 3>& normal, unsigned bits) {
+namespace {
+
+OctahedralNormal folded(const std::array<float, 3>& normal, unsigned bits) {
   const double sum =
       std::abs(double{normal[0]}) + std::abs(double{normal[1]}) + std::abs(double{normal[2]});
-  if (!(sum > 0)) return toOctahedral({0, 0, 1}, bits);
+  if (!(sum > 0)) return folded({0, 0, 1}, bits);
   double x = normal[0] / sum;
   double y = normal[1] / sum;
   if (normal[2] < 0) {
@@ -33,6 +35,14 @@ OctahedralNormal toOctahedral(const std::array<float, 3>& normal, unsigned bits)
     return static_cast<uint16_t>(std::clamp(std::floor((v + 1) / 2 * steps + 0.5), 0.0, steps));
   };
   return {toStep(x), toStep(y)};
+}
+
+}  // namespace
+
+OctahedralNormal toOctahedral(const std::array<float, 3>& normal, unsigned bits) {
+  // On the square's rim two points mean one direction. Going there and back settles which.
+  const OctahedralNormal first = folded(normal, bits);
+  return folded(fromOctahedral(first, bits), bits);
 }
 
 std::array<float, 3> fromOctahedral(const OctahedralNormal& normal, unsigned bits) {
