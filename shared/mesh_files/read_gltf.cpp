@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "shared/mesh_files/attribute_mending.h"
 #include "shared/mesh_files/available_memory.h"
 #include "shared/mesh_files/gltf_buffers.h"
 #include "shared/mesh_files/gltf_instances.h"
@@ -14,7 +15,6 @@
 #include "shared/mesh_files/mesh_readers.h"
 #include "shared/mesh_files/not_carried.h"
 #include "shared/mesh_files/polygon_triangles.h"
-#include "shared/mesh_files/vertex_attributes.h"
 
 namespace meshfront {
 namespace {
