@@ -96,7 +96,7 @@ class GltfReader {
     if (sum.vertices > double{kMaxFileVertices})
       return fail(ErrorCode::tooLarge, "the scene has more than 2^31 - 1 vertices");
     const double bytes = sum.vertices * kVertexBytes + sum.corners * sizeof(uint32_t);
-    if (bytes > double(availableMemory()))
+    if (bytes > double(availableMemory().bytes))
       return fail(ErrorCode::tooLarge, "the scene with all its instances takes " +
                                            std::to_string(uint64_t(bytes / 1048576)) +
                                            " MiB, more than there is memory");
