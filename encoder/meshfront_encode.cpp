@@ -9,11 +9,11 @@
 #include <system_error>
 #include <thread>
 
-#include "encoder/pipeline/available_memory.h"
 #include "encoder/pipeline/base_advice.h"
 #include "encoder/pipeline/encode_mesh.h"
 #include "encoder/pipeline/phase_clock.h"
 #include "encoder/pipeline/progress_bar.h"
+#include "shared/mesh_files/available_memory.h"
 
 namespace {
 

@@ -60,7 +60,7 @@ Result<std::string> contentOf(const std::filesystem::path& path, std::filesystem
     return content;
   }
   auto decompressed =
-      decompress(*content, compression, std::min(kMostDecompressed, availableMemory()));
+      decompress(*content, compression, std::min(kMostDecompressed, availableMemory().bytes));
   if (!decompressed)
     return fail(decompressed.error().code, path.string() + ": " + decompressed.error().message);
   return decompressed;

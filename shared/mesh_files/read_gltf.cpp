@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "shared/mesh_files/attribute_mending.h"
 #include "shared/mesh_files/available_memory.h"
 #include "shared/mesh_files/gltf_buffers.h"
 #include "shared/mesh_files/gltf_instances.h"
@@ -14,7 +15,6 @@
 #include "shared/mesh_files/mesh_readers.h"
 #include "shared/mesh_files/not_carried.h"
 #include "shared/mesh_files/polygon_triangles.h"
-#include "shared/mesh_files/vertex_attributes.h"
 
 namespace meshfront {
 namespace {
@@ -96,7 +96,7 @@ class GltfReader {
     if (sum.vertices > double{kMaxFileVertices})
       return fail(ErrorCode::tooLarge, "the scene has more than 2^31 - 1 vertices");
     const double bytes = sum.vertices * kVertexBytes + sum.corners * sizeof(uint32_t);
-    if (bytes > double(availableMemory()))
+    if (bytes > double(availableMemory().bytes))
       return fail(ErrorCode::tooLarge, "the scene with all its instances takes " +
                                            std::to_string(uint64_t(bytes / 1048576)) +
                                            " MiB, more than there is memory");

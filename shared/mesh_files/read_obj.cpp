@@ -2,12 +2,12 @@
 #include <set>
 #include <vector>
 
+#include "shared/mesh_files/attribute_mending.h"
 #include "shared/mesh_files/corner_normals.h"
 #include "shared/mesh_files/mesh_readers.h"
 #include "shared/mesh_files/not_carried.h"
 #include "shared/mesh_files/polygon_triangles.h"
 #include "shared/mesh_files/text_cursor.h"
-#include "shared/mesh_files/vertex_attributes.h"
 
 namespace meshfront {
 namespace {

@@ -6,12 +6,12 @@
 #include <utility>
 #include <vector>
 
+#include "shared/mesh_files/attribute_mending.h"
 #include "shared/mesh_files/mesh_readers.h"
 #include "shared/mesh_files/not_carried.h"
 #include "shared/mesh_files/ply_body.h"
 #include "shared/mesh_files/ply_header.h"
 #include "shared/mesh_files/polygon_triangles.h"
-#include "shared/mesh_files/vertex_attributes.h"
 
 namespace meshfront {
 namespace {

@@ -24,6 +24,9 @@ GridMesh expectedOf(const IndexedMesh& mesh, unsigned bits) {
   for (const auto& p : closed.positions) out.positions.push_back(grid.toGrid(p));
   out.triangles.assign(closed.triangles.begin(),
                        closed.triangles.begin() + static_cast<ptrdiff_t>(closed.realTriangleCount));
+  out.layout.colours = !closed.colours.empty();
+  out.layout.normalBits = closed.normals.empty() ? 0 : kDefaultNormalBits;
+  out.attributes = packAttributes(closed.colours, closed.normals, out.layout);
   return out;
 }
 

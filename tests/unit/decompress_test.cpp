@@ -148,7 +148,7 @@ TEST(CompressedMeshFiles, AreReadWhateverTheyAreCalled) {
 }
 
 TEST(AvailableMemory, IsSomething) {
-  EXPECT_GT(availableMemory(), uint64_t{1} << 20);
+  EXPECT_GT(availableMemory().bytes, uint64_t{1} << 20);
 }
 
 }  // namespace

@@ -4,8 +4,8 @@
 
 #include <fstream>
 
-#include "encoder/pipeline/available_memory.h"
 #include "encoder/pipeline/encode_mesh.h"
+#include "shared/mesh_files/available_memory.h"
 #include "shared/mesh_files/mesh_files.h"
 #include "tests/data/fractal_sphere.h"
 #include "tests/data/mesh_shapes.h"
