@@ -69,19 +69,6 @@ TEST(AnyOrder, AllGridsAreExact) {
   }
 }
 
-TEST(AnyOrder, EncodingIsTheSameForAnyNumberOfThreads) {
-  EncodeOptions one;
-  one.name = "test";
-  one.threads = 1;
-  EncodeOptions many = one;
-  many.threads = 5;
-  const auto a = encodeMesh(torus(200, 90), one).value().pack;
-  const auto b = encodeMesh(torus(200, 90), many).value().pack;
-  EXPECT_EQ(revisionOf(a), revisionOf(b));
-  EXPECT_EQ(a.chunks, b.chunks);
-  EXPECT_EQ(a.base, b.base);
-}
-
 TEST(AnyOrder, CollapsingEverythingGivesTheBaseBack) {
   const RecordsAtHand records(encodedContent(torus(30, 20)));
   auto mesh = SelectivelyRefinedMesh::fromBase(records.base()).value();
