@@ -34,20 +34,27 @@ test=(
   clang clang-format clang-tidy libclang-rt-14-dev
   xvfb xauth
 )
+# What tests/bench compares with; whatever of these is missing is left out there.
+bench=(
+  libmeshoptimizer-dev                 # meshopt_simplify
+  draco                                # draco_encoder
+)
 
 usage() {
   sed -n '2,8s/^# \{0,1\}//p' "$0"
   echo
-  echo "Groups: build (${#build[@]} packages), run (${#run[@]}), test (${#test[@]})."
+  echo "Groups: build (${#build[@]} packages), run (${#run[@]}), test (${#test[@]}),"
+  echo "bench (${#bench[@]})."
 }
 
 packages=()
 for group in "${@:-all}"; do
   case "$group" in
-    all) packages+=("${build[@]}" "${run[@]}" "${test[@]}") ;;
+    all) packages+=("${build[@]}" "${run[@]}" "${test[@]}" "${bench[@]}") ;;
     build) packages+=("${build[@]}") ;;
     run) packages+=("${run[@]}") ;;
     test) packages+=("${test[@]}") ;;
+    bench) packages+=("${bench[@]}") ;;
     -h | --help) usage; exit 0 ;;
     *)
       echo "install-packages: no group '$group'" >&2

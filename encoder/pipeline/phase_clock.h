@@ -1,13 +1,12 @@
 // Times the phases of the encoding and says when one begins.
 #pragma once
 
-#include <sys/resource.h>
-
 #include <chrono>
 #include <string>
 #include <vector>
 
 #include "encoder/pipeline/encode_mesh.h"
+#include "encoder/pipeline/peak_memory.h"
 
 namespace meshfront {
 
@@ -33,9 +32,7 @@ class PhaseClock {
     running_ = false;
     const auto now = std::chrono::steady_clock::now();
     phases_.back().seconds = std::chrono::duration<double>(now - started_).count();
-    rusage usage{};
-    getrusage(RUSAGE_SELF, &usage);
-    phases_.back().peakBytes = static_cast<uint64_t>(usage.ru_maxrss) * 1024;
+    phases_.back().peakBytes = peakMemory();
   }
   // The share of the phase that is done.
   void report(double done) const {

@@ -8,7 +8,7 @@ namespace meshfront {
 
 namespace {
 
-constexpr float kLengthWeight = 1e-5F;
+constexpr float kLengthWeight = 1e-7F;
 // From here on a ring is not walked where asking for single neighbours will do.
 constexpr uint32_t kLongRing = 64;
 constexpr float kNever = std::numeric_limits<float>::infinity();

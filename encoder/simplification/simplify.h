@@ -86,7 +86,7 @@ using SimplifyProgress = std::function<void(size_t done, size_t planned)>;
 // virtual corner. Faces may have no area, and positions may coincide.
 //
 // The cost of moving u onto t is u's area-weighted quadric error (Garland and Heckbert, SIGGRAPH
-// 1997; summed over all that has been collapsed onto u) at t's position plus 1e-5 |ut|^4, times the
+// 1997; summed over all that has been collapsed onto u) at t's position plus 1e-7 |ut|^4, times the
 // balance factor. Area times squared distance is a length to the fourth too, so the sum means the
 // same at any scale; |ut| counts as one grid step at least. What is already on t would be lost in
 // either case and stays out: with it the mean distance at a fifth of the vertices is 2 % larger.
