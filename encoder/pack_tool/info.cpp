@@ -219,7 +219,7 @@ std::string notCarriedAsText(const ordered_json& report) {
   if (!list.is_array()) return out;
   for (const auto& sentence : list)
     if (sentence.is_string()) out += fmt::format("not carried {}\n", sentence.get<std::string>());
-  return out.empty() ? "not carried nothing: all of the mesh is here\n" : out;
+  return out.empty() ? "not carried nothing\n" : out;
 }
 
 }  // namespace
