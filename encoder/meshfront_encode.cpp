@@ -4,7 +4,6 @@
 
 #include <CLI/CLI.hpp>
 #include <cerrno>
-#include <csignal>
 #include <nlohmann/json.hpp>
 #include <system_error>
 #include <thread>
@@ -13,45 +12,12 @@
 #include "encoder/pipeline/encode_mesh.h"
 #include "encoder/pipeline/phase_clock.h"
 #include "encoder/pipeline/progress_bar.h"
+#include "encoder/pipeline/signals_held_back.h"
 #include "shared/mesh_files/available_memory.h"
 
 namespace {
 
 using namespace meshfront;
-
-// While the pack is written an interrupt waits: writing looks for it and gives up, with nothing
-// left behind; then it is delivered. Before, there is nothing yet that could be left.
-class SignalsHeldBack {
- public:
-  SignalsHeldBack() {
-    sigemptyset(&set_);
-    for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
-      struct sigaction action {};
-      sigaction(signal, nullptr, &action);
-      if (action.sa_handler != SIG_IGN) sigaddset(&set_, signal);
-    }
-    pthread_sigmask(SIG_BLOCK, &set_, &before_);
-  }
-  ~SignalsHeldBack() { pthread_sigmask(SIG_SETMASK, &before_, nullptr); }
-  SignalsHeldBack(const SignalsHeldBack&) = delete;
-  SignalsHeldBack& operator=(const SignalsHeldBack&) = delete;
-
-  [[nodiscard]] bool interrupted() const {
-    sigset_t waiting;
-    sigpending(&waiting);
-    sigandset(&waiting, &waiting, &set_);
-    return sigisemptyset(&waiting) == 0;
-  }
-  // The pack is there: from now on an interrupt comes too late to change how this ends.
-  void ignore() const {
-    for (const int signal : {SIGINT, SIGTERM, SIGHUP})
-      if (sigismember(&set_, signal) == 1) std::signal(signal, SIG_IGN);
-  }
-
- private:
-  sigset_t set_{};
-  sigset_t before_{};
-};
 
 Result<void> run(const std::string& input, const std::string& output, EncodeOptions options,
                  bool json) {
@@ -72,7 +38,7 @@ Result<void> run(const std::string& input, const std::string& output, EncodeOpti
   if (!encoded) return tl::unexpected(encoded.error());
   PhaseClock clock(encoded->report.phases, progress);
   clock.begin("write");
-  const SignalsHeldBack held;
+  const SignalsHeldBack held;  // before, there is nothing yet that could be left
   const auto written =
       writePack(output, std::move(encoded->pack), [&] { return held.interrupted(); });
   if (!written) return tl::unexpected(written.error());
@@ -127,6 +93,10 @@ int main(int argc, char** argv) {
   app.add_flag("!--no-colours", options.colours, "Leave the vertices' colours out");
   app.add_option("--base-fraction", options.baseFraction, "Base mesh as a share of the vertices")
       ->check(CLI::Range(0.0, 1.0))
+      ->capture_default_str();
+  app.add_option("--base-limit", options.baseLimit,
+                 "Largest base mesh wanted, in vertices, however large the mesh is")
+      ->check(CLI::Range(uint64_t{4}, uint64_t{UINT32_MAX}))
       ->capture_default_str();
   app.add_option("--balance", options.balance,
                  "Exponent that keeps trees shallow: 0 (off), 1 or 2 (shallower)")

@@ -3,7 +3,6 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
 #include <vector>
 
 namespace meshfront {
@@ -47,16 +46,9 @@ void PackCatalogue::add(const std::filesystem::path& file,
 }
 
 void PackCatalogue::describeAll() {
-  nlohmann::json meshes = nlohmann::json::array();
-  for (const auto& [name, mesh] : meshes_) {
-    const MeshMetadata& metadata = mesh.store->metadata();
-    meshes.push_back({{"name", name},
-                      {"revision", metadata.revision},
-                      {"vertexCount", metadata.vertexCount},
-                      {"triangleCount", metadata.triangleCount},
-                      {"links", {{"self", std::string("/v1/meshes/") + name}}}});
-  }
-  list_ = HeldBytes::of(nlohmann::json{{"meshes", meshes}}.dump(2) + "\n");
+  std::vector<MeshMetadata> meshes;
+  for (const auto& [name, mesh] : meshes_) meshes.push_back(mesh.store->metadata());
+  list_ = HeldBytes::of(catalogueJson(meshes));
 }
 
 Result<Described> PackCatalogue::list(Waiting) {

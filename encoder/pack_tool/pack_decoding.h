@@ -11,6 +11,9 @@
 
 namespace meshfront {
 
+// What a PackStore of a program that touches every chunk may take for its index.
+inline constexpr size_t kIndexBudget = size_t{4} << 30;
+
 [[nodiscard]] Result<SelectivelyRefinedMesh> baseOf(RecordStore& store);
 
 // Asks for the records of front nodes (any order; encoded and decoded as a request) and applies

@@ -102,7 +102,9 @@ Result<EncodedMesh> encodeMesh(IndexedMesh mesh, const EncodeOptions& options,
 
   clock.begin("simplify");
   SimplifyOptions simplifyOptions;
-  simplifyOptions.baseFraction = options.baseFraction;
+  simplifyOptions.baseFraction =
+      std::min(options.baseFraction, static_cast<double>(options.baseLimit) /
+                                         static_cast<double>(positions.size()));
   simplifyOptions.balance = options.balance;
   simplifyOptions.maxValence = options.maxValence;
   Simplification simplification =

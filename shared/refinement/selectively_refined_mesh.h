@@ -67,6 +67,12 @@ class SelectivelyRefinedMesh {
   [[nodiscard]] uint64_t drawnTriangleCount() const { return drawnCount_; }
   [[nodiscard]] const BaseMesh& base() const { return base_; }
 
+  // --- for tools that show how records apply ---------------------------------------------------
+  [[nodiscard]] const HalfEdgeMesh& edges() const { return edges_; }  // vertices are slots
+  [[nodiscard]] FaceKey keyOf(FaceSlot face) const;                   // of a face that is in use
+  [[nodiscard]] GridPosition position(NodeIndex node) const { return nodes_[node].position; }
+  [[nodiscard]] PredictedNormal normal(NodeIndex node) const { return nodes_[node].normal; }
+
   // --- changing it -----------------------------------------------------------------------------
   // Untrusted record bits: [bitOffset, bitOffset + bitLength) of `bytes`. The node must be active
   // and no leaf. On an error the mesh is unchanged. The bits are copied and kept.
@@ -114,7 +120,6 @@ class SelectivelyRefinedMesh {
 
   Result<void> apply(NodeIndex node, std::span<const uint8_t> bytes, uint64_t bitOffset,
                      uint32_t bitLength);
-  [[nodiscard]] FaceKey keyOf(FaceSlot face) const;
   [[nodiscard]] bool isVirtualSlot(uint32_t slot) const {
     return slot >= firstVirtual_ && slot < endVirtual_;
   }

@@ -147,6 +147,17 @@ std::string toJson(const MeshMetadata& m) {
   return out.dump(2, ' ', false, json::error_handler_t::replace) + "\n";
 }
 
+std::string catalogueJson(std::span<const MeshMetadata> meshes) {
+  json list = json::array();
+  for (const MeshMetadata& m : meshes)
+    list.push_back({{"name", m.name},
+                    {"revision", m.revision},
+                    {"vertexCount", m.vertexCount},
+                    {"triangleCount", m.triangleCount},
+                    {"links", {{"self", "/v1/meshes/" + m.name}}}});
+  return json{{"meshes", list}}.dump(2) + "\n";
+}
+
 Result<MeshMetadata> metadataFromJson(std::string_view text) {
   const json in = json::parse(text, nullptr, false);
   if (in.is_discarded() || !in.is_object()) return fail("mesh metadata: not a JSON object");

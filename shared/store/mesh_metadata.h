@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -36,6 +37,8 @@ struct MeshMetadata {
 [[nodiscard]] bool isMeshName(std::string_view name);
 [[nodiscard]] bool isRevision(std::string_view revision);
 [[nodiscard]] std::string toJson(const MeshMetadata& metadata);  // with links of the interface
+// The catalogue of these meshes, in their order.
+[[nodiscard]] std::string catalogueJson(std::span<const MeshMetadata> meshes);
 [[nodiscard]] Result<MeshMetadata> metadataFromJson(std::string_view json);  // untrusted
 
 }  // namespace meshfront
