@@ -1,10 +1,12 @@
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <string_view>
 
 #include "shared/bits/base64url.h"
 #include "shared/bits/crc32c.h"
 #include "shared/hierarchy/tree_bitstring.h"
+#include "tests/data/mesh_shapes.h"
 #include "tests/data/synthetic_mesh.h"
 #include "tests/fuzz/fuzz_bases.h"
 #include "tests/fuzz/seeds.h"
@@ -12,6 +14,35 @@
 
 namespace meshfront::fuzz {
 namespace {
+
+PackContent encodedShape(IndexedMesh mesh, const char* name) {
+  EncodeOptions options;
+  options.name = name;
+  options.quantizationBits = 10;
+  options.baseFraction = 0.05;
+  options.threads = 1;
+  return std::move(encodeMesh(std::move(mesh), options).value().pack);
+}
+
+// Closed, with colours and normals.
+PackContent colouredTorus() {
+  IndexedMesh mesh = torus(16, 10);
+  for (const auto& p : mesh.positions) {
+    const auto shade = [](double v) { return static_cast<uint8_t>(128 + 50 * std::sin(3 * v)); };
+    mesh.colours.push_back({shade(p[0]), shade(p[1]), shade(p[2]), 255});
+    mesh.normals.push_back(
+        {static_cast<float>(p[0]), static_cast<float>(p[1]), static_cast<float>(p[2])});
+  }
+  return encodedShape(std::move(mesh), "torus");
+}
+
+// With a boundary and a hole: virtual vertices; no attributes.
+PackContent sheetWithHole() {
+  IndexedMesh mesh = gridPatchWithout(
+      12, 12, [](uint32_t x, uint32_t y) { return x > 3 && x < 7 && y > 3 && y < 6; });
+  for (auto& p : mesh.positions) p[2] = std::sin(p[0]) + std::cos(2 * p[1]);
+  return encodedShape(std::move(mesh), "sheet");
+}
 
 std::string textOf(std::span<const uint8_t> bytes) {
   return {bytes.begin(), bytes.end()};
