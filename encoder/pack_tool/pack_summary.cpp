@@ -43,10 +43,11 @@ Result<PackSummary> summarise(const Pack& pack) {
   writeBaseConnectivity(triangles, base->triangles, base->treeCount());
   out.baseTriangleBits = triangles.bitCount();
   const uint64_t all = pack.base().size() * 8;
+  const uint64_t known = out.baseTableBits + out.baseTriangleBits;
+  const uint64_t rest = all > known ? all - known : 0;
   constexpr uint64_t kMagicBits = 32;
-  out.baseOtherBits = std::min<uint64_t>(kMagicBits + kChecksumBytes * 8,
-                                         all - out.baseTableBits - out.baseTriangleBits);
-  out.baseRootBits = all - out.baseTableBits - out.baseTriangleBits - out.baseOtherBits;
+  out.baseOtherBits = std::min<uint64_t>(kMagicBits + kChecksumBytes * 8, rest);
+  out.baseRootBits = rest - out.baseOtherBits;
 
   std::vector<uint64_t> sizes;
   uint32_t number = 0;

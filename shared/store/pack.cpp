@@ -94,6 +94,10 @@ Result<std::shared_ptr<const Pack>> Pack::open(const std::filesystem::path& path
   auto metadata = metadataFromJson(asText(*metadataBytes));
   if (!metadata) return tl::unexpected(metadata.error());
   state->metadata = std::move(*metadata);
+  MDB_stat entries{};
+  mdb_stat(state->transaction, state->database, &entries);
+  if (state->metadata.chunkCount > entries.ms_entries)
+    return fail("pack: fewer chunks than its metadata tells; encode the mesh again");
   const auto base = state->get(pack_keys::kBase);
   if (!base) return tl::unexpected(base.error());
   const auto index = state->get(pack_keys::kChunkIndex);

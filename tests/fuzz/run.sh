@@ -51,7 +51,7 @@ run_target() {
     executions=$((executions + ${left:-0}))
     while read -r -d '' input; do
       if "${fuzz[@]}" "$input" >/dev/null 2>&1; then rm "$input"; else crashes=$((crashes + 1)); fi
-    done < <(find "$found" -type f -newer "$log.begin" -print0)
+    done < <(find "$found" -type f ! -name 'slow-unit-*' -newer "$log.begin" -print0)
   done
   rm -rf "$TMPDIR" "$log.run"
   first=$(sed -n 's/.*INITED .*ft: \([0-9]*\) .*/\1/p' "$log" | head --lines=1)
