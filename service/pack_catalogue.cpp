@@ -47,6 +47,7 @@ void PackCatalogue::add(const std::filesystem::path& file,
 
 void PackCatalogue::describeAll() {
   std::vector<MeshMetadata> meshes;
+  meshes.reserve(meshes_.size());
   for (const auto& [name, mesh] : meshes_) meshes.push_back(mesh.store->metadata());
   list_ = HeldBytes::of(catalogueJson(meshes));
 }
