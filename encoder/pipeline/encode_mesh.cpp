@@ -103,8 +103,8 @@ Result<EncodedMesh> encodeMesh(IndexedMesh mesh, const EncodeOptions& options,
   clock.begin("simplify");
   SimplifyOptions simplifyOptions;
   simplifyOptions.baseFraction =
-      std::min(options.baseFraction, static_cast<double>(options.baseLimit) /
-                                         static_cast<double>(positions.size()));
+      std::min(options.baseFraction,
+               static_cast<double>(options.baseLimit) / static_cast<double>(positions.size()));
   simplifyOptions.balance = options.balance;
   simplifyOptions.maxValence = options.maxValence;
   Simplification simplification =

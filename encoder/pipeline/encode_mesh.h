@@ -21,8 +21,8 @@ struct EncodeOptions {
   unsigned quantizationBits = kDefaultQuantizationBits;
   bool colours = true;                       // carry the input's, if it has any
   unsigned normalBits = kDefaultNormalBits;  // of each coordinate of normals; 0: leave them out
-  double baseFraction = 0.002;  // of the vertices, wanted in the base mesh
-  uint64_t baseLimit = 4000;    // and at most that many: the first picture is not to wait for more
+  double baseFraction = 0.002;               // of the vertices, wanted in the base mesh
+  uint64_t baseLimit = 4000;  // and at most that many: the first picture is not to wait for more
   unsigned balance = 1;
   uint32_t maxValence = SimplifyOptions{}.maxValence;
   unsigned threads = 2;  // changes the time, never the result
