@@ -81,7 +81,7 @@ def main():
             peak = max(phase["peakMiB"] for phase in report["phases"])
             costs.append(
                 [name]
-                + [f"{bits[k]:.2f}" for k in ("cutCodeWithLength", "leafFlags", "significance", "position", "total")]
+                + [f"{bits[k]:.2f}" for k in ("cutRegionsWithLength", "leafFlags", "significance", "position", "total")]
                 + [str(report["metadata"]["baseBytes"]), str(report["maxDepth"]), f"{seconds:.2f}", f"{peak:.0f}"]
             )
         with Server(programs / "meshfront-serve", "--packs", packs, "--listen", "127.0.0.1:0") as service, Server(
