@@ -25,11 +25,11 @@ Entries entriesOf(Bytes input) {
     const uint8_t which = in.byte();
     const size_t length = in.word();
     const auto content = in.take(length);
-    std::vector<uint8_t> plain(content.begin(), content.end());
-    if (which == 0) entries[pack_keys::kMetadata] = std::move(plain);
+    const std::vector<uint8_t> plain(content.begin(), content.end());
+    if (which == 0) entries[pack_keys::kMetadata] = plain;
     if (which == 1) entries[pack_keys::kBase] = withChecksum(content);
     if (which == 2) entries[pack_keys::kChunkIndex] = withChecksum(content);
-    if (which == 3) entries[pack_keys::kReport] = std::move(plain);
+    if (which == 3) entries[pack_keys::kReport] = plain;
     if (which >= 4) entries[pack_keys::chunk(which - 4U)] = withChecksum(content);
   }
   return entries;
