@@ -16,8 +16,7 @@ bool says(const std::vector<std::string>& advice, const std::string& words) {
 
 std::vector<std::string> adviceFor(IndexedMesh mesh, const EncodeOptions& options) {
   const auto encoded = encodeMesh(std::move(mesh), options).value();
-  auto advice =
-      adviceOnBase(encoded.report.simplification, encoded.pack.metadata.vertexCount);
+  auto advice = adviceOnBase(encoded.report.simplification, encoded.pack.metadata.vertexCount);
   for (const std::string& sentence : advice)  // both reports say the same
     EXPECT_NE(describe(encoded.report).find(sentence), std::string::npos);
   EXPECT_EQ(toJson(encoded.report, false).find("\"advice\": []") != std::string::npos,
