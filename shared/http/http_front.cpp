@@ -176,9 +176,12 @@ struct HttpFront::Server {
     return static_cast<Server*>(self)->receive(connection, *static_cast<Exchange*>(*exchange),
                                                method, contentSize, content);
   }
-  static void onCompleted(void*, MHD_Connection*, void** exchange, MHD_RequestTerminationCode) {
-    delete static_cast<Exchange*>(*exchange);
-    *exchange = nullptr;
+  static void onCompleted(void*, MHD_Connection*, void** closure, MHD_RequestTerminationCode) {
+    const auto* exchange = static_cast<Exchange*>(*closure);
+    // A daemon that stops completes what a worker has answered without asking for it again.
+    if (exchange != nullptr) (void)exchange->answered.load(std::memory_order_acquire);
+    delete exchange;
+    *closure = nullptr;
   }
 };
 
