@@ -7,7 +7,10 @@
 #include <algorithm>
 #include <atomic>
 #include <charconv>
+#include <chrono>
+#include <condition_variable>
 #include <cstring>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <vector>
@@ -26,6 +29,7 @@ constexpr uint64_t kMaxDroppedContent = uint64_t{16} << 20;
 constexpr unsigned kBacklog = 1024;
 constexpr unsigned kMaxConnections = 16384;
 constexpr unsigned kDescriptorsKept = 128;  // for files, upstream connections and the epoll sets
+constexpr std::chrono::seconds kGrace(3);   // for what is under way when the server ends
 
 // One request, from its first line until its response has been sent.
 struct Exchange {
@@ -104,6 +108,9 @@ struct HttpFront::Server {
   const Options options;
   std::optional<WorkerPool> workers;
   MHD_Daemon* daemon = nullptr;
+  std::mutex mutex;
+  std::condition_variable ended;
+  size_t underWay = 0;  // exchanges; guarded by `mutex`
 
   Server(HttpHandler& h, const Options& o) : handler(h), options(o) {
     if (options.waitingThreads > 0)
@@ -113,16 +120,24 @@ struct HttpFront::Server {
   ~Server() {
     if (daemon == nullptr) return;
     const MHD_socket listener = MHD_quiesce_daemon(daemon);
-    // Every suspended connection is resumed by its worker; only then the daemon may stop.
+    // Every suspended connection is resumed by its worker; only then the daemon may stop, which
+    // drops what has not been sent.
     if (workers) workers->finish();
+    {
+      std::unique_lock lock(mutex);
+      ended.wait_for(lock, kGrace, [this] { return underWay == 0; });
+    }
     MHD_stop_daemon(daemon);
     if (listener != MHD_INVALID_SOCKET) ::close(listener);
   }
 
   MHD_Result receive(MHD_Connection* connection, Exchange& exchange, const char* method,
                      size_t* contentSize, const char* content) {
-    if (exchange.answered.load(std::memory_order_acquire))
+    if (exchange.answered.load(std::memory_order_acquire)) {
+      // A daemon that is being stopped takes a response, drops it and asks again.
+      if (!exchange.response) return MHD_NO;
       return queue(connection, *std::exchange(exchange.response, {}));
+    }
     if (!exchange.started) {
       exchange.started = true;
       exchange.method = method;
@@ -165,9 +180,12 @@ struct HttpFront::Server {
   }
 
   // --- what libmicrohttpd calls ---
-  static void* onTarget(void*, const char* target, MHD_Connection*) {
+  static void* onTarget(void* self, const char* target, MHD_Connection*) {
     auto* exchange = new Exchange;
     exchange->target = target;
+    auto& server = *static_cast<Server*>(self);
+    const std::scoped_lock lock(server.mutex);
+    ++server.underWay;
     return exchange;
   }
   static MHD_Result onRequest(void* self, MHD_Connection* connection, const char*,
@@ -176,12 +194,16 @@ struct HttpFront::Server {
     return static_cast<Server*>(self)->receive(connection, *static_cast<Exchange*>(*exchange),
                                                method, contentSize, content);
   }
-  static void onCompleted(void*, MHD_Connection*, void** closure, MHD_RequestTerminationCode) {
+  static void onCompleted(void* self, MHD_Connection*, void** closure, MHD_RequestTerminationCode) {
     const auto* exchange = static_cast<Exchange*>(*closure);
+    if (exchange == nullptr) return;
     // A daemon that stops completes what a worker has answered without asking for it again.
-    if (exchange != nullptr) (void)exchange->answered.load(std::memory_order_acquire);
+    (void)exchange->answered.load(std::memory_order_acquire);
     delete exchange;
     *closure = nullptr;
+    auto& server = *static_cast<Server*>(self);
+    const std::scoped_lock lock(server.mutex);
+    if (--server.underWay == 0) server.ended.notify_all();
   }
 };
 
@@ -205,8 +227,8 @@ Result<std::unique_ptr<HttpFront>> HttpFront::start(HttpHandler& handler, const 
   if (options.address.socketAddress.ss_family == AF_INET6) flags |= MHD_USE_IPv6;
   server->daemon = MHD_start_daemon(
       flags, options.address.port, nullptr, nullptr, &Server::onRequest, server.get(),
-      MHD_OPTION_URI_LOG_CALLBACK, &Server::onTarget, nullptr, MHD_OPTION_NOTIFY_COMPLETED,
-      &Server::onCompleted, nullptr, MHD_OPTION_SOCK_ADDR, &options.address.socketAddress,
+      MHD_OPTION_URI_LOG_CALLBACK, &Server::onTarget, server.get(), MHD_OPTION_NOTIFY_COMPLETED,
+      &Server::onCompleted, server.get(), MHD_OPTION_SOCK_ADDR, &options.address.socketAddress,
       MHD_OPTION_ARRAY, items.data(), MHD_OPTION_END);
   if (server->daemon == nullptr)
     return fail(ErrorCode::unavailable, "cannot listen on " + options.address.host + ":" +

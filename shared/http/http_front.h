@@ -27,7 +27,8 @@ class HttpFront {
   // Listens when it returns. `handler` must outlive the front.
   [[nodiscard]] static Result<std::unique_ptr<HttpFront>> start(HttpHandler& handler,
                                                                 const Options& options);
-  // Accepts no more, lets waiting answers finish, then closes all connections.
+  // Accepts no more, gives what is under way 3 seconds to be answered and sent, then closes all
+  // connections.
   ~HttpFront();
   HttpFront(const HttpFront&) = delete;
   HttpFront& operator=(const HttpFront&) = delete;
