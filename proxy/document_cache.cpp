@@ -13,10 +13,6 @@ std::string_view trimmed(std::string_view text) {
   return text;
 }
 
-bool isAway(const Error& error) {
-  return error.code == ErrorCode::unavailable || error.code == ErrorCode::timedOut;
-}
-
 }  // namespace
 
 std::chrono::seconds freshnessLifetime(std::string_view cacheControl) {

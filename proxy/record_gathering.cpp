@@ -18,10 +18,6 @@ bool sameExpansion(const Expansion& a, const Expansion& b) {
   return a.levels == b.levels && a.significance == b.significance;
 }
 
-bool isAway(const Error& error) {
-  return error.code == ErrorCode::unavailable || error.code == ErrorCode::timedOut;
-}
-
 }  // namespace
 
 Result<Answer> RecordGathering::collect(std::span<const NodeId> wanted,

@@ -6,7 +6,7 @@ namespace meshfront {
 namespace {
 
 // Nothing came, or a gateway says that nothing is behind it. Timeouts are not worth repeating.
-bool isAway(const Result<UpstreamResponse>& response) {
+bool nothingCame(const Result<UpstreamResponse>& response) {
   if (!response) return response.error().code == ErrorCode::unavailable;
   return response->status == 502 || response->status == 503;
 }
@@ -36,7 +36,7 @@ Result<UpstreamResponse> RetryingUpstream::send(const UpstreamRequest& request) 
   auto pause = options_.firstPause;
   while (true) {
     auto response = upstream_.send(request);
-    if (!isAway(response)) {
+    if (!nothingCame(response)) {
       noteSuccess();
       return response;
     }

@@ -26,6 +26,11 @@ struct UpstreamResponse {
   std::vector<uint8_t> content;  // untrusted, but as long as its Content-Length said
 };
 
+// No answer came; another time one may.
+inline bool isAway(const Error& error) {
+  return error.code == ErrorCode::unavailable || error.code == ErrorCode::timedOut;
+}
+
 // Thread-safe.
 class Upstream {
  public:

@@ -18,8 +18,8 @@
 namespace meshfront {
 namespace {
 
-constexpr uint64_t kMagic = 0x4D464202;
-constexpr unsigned kMagicBits = 32;
+constexpr uint64_t kBaseMagic = 0x4D464202;
+constexpr unsigned kBaseMagicBits = 32;
 constexpr unsigned kSplitOrder = 16;
 constexpr unsigned kRootOrder = 8;
 constexpr unsigned kVirtualOrder = 2;
@@ -93,7 +93,7 @@ unsigned bestOrder(const BaseMesh& base) {
 
 std::vector<uint8_t> encodeBaseMesh(const BaseMesh& base) {
   BitWriter out;
-  out.write(kMagic, kMagicBits);
+  out.write(kBaseMagic, kBaseMagicBits);
   out.write(base.quantizationBits, 5);
   writeExpGolomb(out, base.splitCount, kSplitOrder);
   writeExpGolomb(out, base.roots.size(), kRootOrder);
@@ -126,7 +126,7 @@ Result<BaseMesh> decodeBaseMesh(std::span<const uint8_t> bytes) {
   const auto content = checkedContent(bytes, "base mesh");
   if (!content) return tl::unexpected(content.error());
   BitReader in(*content);
-  if (in.read(kMagicBits) != kMagic)
+  if (in.read(kBaseMagicBits) != kBaseMagic)
     return fail("base mesh: not a base of this version of the format; update the viewer or server");
   BaseMesh base;
   base.quantizationBits = static_cast<unsigned>(in.read(5));

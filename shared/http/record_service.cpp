@@ -28,7 +28,7 @@ std::string hexOf(std::span<const uint8_t> bytes) {
   return text;
 }
 
-std::string quoted(std::string_view text) {
+std::string inQuotes(std::string_view text) {
   std::string out(1, '"');
   return out.append(text).append(1, '"');
 }
@@ -37,14 +37,14 @@ std::string quoted(std::string_view text) {
 std::string digestTag(std::span<const uint8_t> content) {
   std::array<uint8_t, EVP_MAX_MD_SIZE> digest{};
   EVP_Digest(content.data(), content.size(), digest.data(), nullptr, EVP_sha256(), nullptr);
-  return quoted(hexOf(std::span(digest).first(16)));
+  return inQuotes(hexOf(std::span(digest).first(16)));
 }
 
 // A strong tag of an answer. Its URL fixes its content for ever; only the content of a QUERY can
 // make two answers differ, and those differ in checksum or length.
 std::string answerTag(std::span<const uint8_t> content) {
   std::string tag = hexOf(content.last(std::min<size_t>(content.size(), 4)));
-  return quoted(tag.append("-").append(std::to_string(content.size())));
+  return inQuotes(tag.append("-").append(std::to_string(content.size())));
 }
 
 void setAge(HttpResponse& response, std::optional<std::chrono::seconds> age) {
@@ -208,7 +208,7 @@ Result<HttpResponse> RecordService::dispatch(const HttpRequest& request, const R
     content = store.chunk(*number, waiting);
   }
   if (!content) return tl::unexpected(content.error());
-  return immutableResponse(std::move(*content), quoted(route.revision), store.age());
+  return immutableResponse(std::move(*content), inQuotes(route.revision), store.age());
 }
 
 Result<HttpResponse> RecordService::splits(const HttpRequest& request, const Route& route,

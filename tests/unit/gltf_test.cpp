@@ -22,10 +22,10 @@ using Normals = std::vector<std::array<float, 3>>;
 using Sentences = std::vector<std::string>;
 
 // Collects the bytes of one buffer; view() gives the JSON of a bufferView on what was added last.
-class Bytes {
+class BinaryPart {
  public:
   template <typename T>
-  Bytes& add(std::initializer_list<T> values) {
+  BinaryPart& add(std::initializer_list<T> values) {
     start_ = bytes_.size();
     for (const T value : values) {
       bytes_.resize(bytes_.size() + sizeof value);
@@ -44,7 +44,7 @@ class Bytes {
   size_t start_ = 0;
 };
 
-void putWord(std::string& out, size_t word) {
+void appendWord(std::string& out, size_t word) {
   for (int i = 0; i < 4; ++i) out += static_cast<char>(word >> (8 * i));
 }
 
@@ -56,11 +56,11 @@ std::string glb(const std::string& members, const std::string& bytes) {
   std::string binary = bytes;
   binary.resize((binary.size() + 3) / 4 * 4);
   std::string out = "glTF";
-  putWord(out, 2);
-  putWord(out, 12 + 8 + json.size() + 8 + binary.size());
-  putWord(out, json.size());
+  appendWord(out, 2);
+  appendWord(out, 12 + 8 + json.size() + 8 + binary.size());
+  appendWord(out, json.size());
   out += "JSON" + json;
-  putWord(out, binary.size());
+  appendWord(out, binary.size());
   return out + std::string("BIN\0", 4) + binary;
 }
 
@@ -74,15 +74,15 @@ std::string problemOf(const std::string& file) {
   return mesh ? std::string("none") : mesh.error().message;
 }
 
-const Positions kSquare = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0.5}};
-Bytes squarePositions() {
-  return Bytes().add<float>({0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0.5F});
+const Positions kGltfSquare = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0.5}};
+BinaryPart squarePositions() {
+  return BinaryPart().add<float>({0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0.5F});
 }
 const std::string kPositions = R"({"bufferView":0,"componentType":5126,"count":4,"type":"VEC3"})";
 
 // A square of the given primitives; views and accessors behind those of the positions.
 std::string squareGlb(
-    const Bytes& bytes, const std::string& views, const std::string& accessors,
+    const BinaryPart& bytes, const std::string& views, const std::string& accessors,
     const std::string& primitives,
     const std::string& scene = R"("nodes":[{"mesh":0}],"scenes":[{"nodes":[0]}])") {
   return glb(R"("bufferViews":[{"buffer":0,"byteLength":48})" + views + R"(],"accessors":[)" +
@@ -91,7 +91,7 @@ std::string squareGlb(
              bytes.all());
 }
 std::string indexedSquare(const std::string& scene) {
-  Bytes bytes = squarePositions();
+  BinaryPart bytes = squarePositions();
   bytes.add<uint8_t>({0, 1, 2, 0, 2, 3});
   return squareGlb(bytes, "," + bytes.view(),
                    R"(,{"bufferView":1,"componentType":5121,"count":6,"type":"SCALAR"})",
@@ -100,7 +100,7 @@ std::string indexedSquare(const std::string& scene) {
 
 TEST(Gltf, ReadsIndicesOfAllTypesAndModes) {
   const Triangles fan = {{0, 1, 2}, {0, 2, 3}};
-  Bytes bytes = squarePositions();
+  BinaryPart bytes = squarePositions();
   std::string views;
   views += "," + bytes.add<uint8_t>({0, 1, 2, 0, 2, 3}).view();
   views += "," + bytes.add<uint16_t>({0, 1, 2, 3}).view();
@@ -111,7 +111,7 @@ TEST(Gltf, ReadsIndicesOfAllTypesAndModes) {
       R"(,{"bufferView":3,"componentType":5125,"count":4,"type":"SCALAR"})";
   const auto read = [&](const std::string& primitive) {
     const auto mesh = parsed(squareGlb(bytes, views, accessors, primitive));
-    EXPECT_EQ(mesh.positions, kSquare);
+    EXPECT_EQ(mesh.positions, kGltfSquare);
     EXPECT_TRUE(mesh.notCarried.empty());
     return mesh.triangles;
   };
@@ -125,7 +125,7 @@ TEST(Gltf, ReadsIndicesOfAllTypesAndModes) {
 }
 
 TEST(Gltf, SharesVerticesAmongPrimitives) {
-  Bytes bytes = squarePositions();
+  BinaryPart bytes = squarePositions();
   std::string views = "," + bytes.add<uint8_t>({0, 1, 2}).view();
   views += "," + bytes.add<uint8_t>({0, 2, 3}).view();
   const auto mesh =
@@ -134,7 +134,7 @@ TEST(Gltf, SharesVerticesAmongPrimitives) {
                        R"(,{"bufferView":2,"componentType":5121,"count":3,"type":"SCALAR"})",
                        R"({"attributes":{"POSITION":0},"indices":1,"material":0},)"
                        R"({"attributes":{"POSITION":0},"indices":2,"material":1})"));
-  EXPECT_EQ(mesh.positions, kSquare);
+  EXPECT_EQ(mesh.positions, kGltfSquare);
   EXPECT_EQ(mesh.triangles, (Triangles{{0, 1, 2}, {0, 2, 3}}));
 }
 
@@ -200,7 +200,7 @@ TEST(Gltf, BoundsTheTreeOfNodes) {
 
 TEST(Gltf, ReadsColoursOfAllTypes) {
   const auto colours = [](auto values, const std::string& accessor) {
-    Bytes bytes = squarePositions();
+    BinaryPart bytes = squarePositions();
     bytes.add(values);
     return parsed(squareGlb(bytes, "," + bytes.view(), R"(,{"bufferView":1,"count":4,)" + accessor,
                             R"({"attributes":{"POSITION":0,"COLOR_0":1},"mode":6})"))
@@ -219,7 +219,7 @@ TEST(Gltf, ReadsColoursOfAllTypes) {
 }
 
 TEST(Gltf, TransformsNormalsByTheInverseTranspose) {
-  Bytes bytes = squarePositions();
+  BinaryPart bytes = squarePositions();
   bytes.add<float>({0, 0, 1, 1, 1, 0, 0, 0, 0, 0, 0, 7});
   const auto normals = [&](const std::string& node) {
     return parsed(squareGlb(bytes, "," + bytes.view(),
@@ -239,7 +239,7 @@ TEST(Gltf, TransformsNormalsByTheInverseTranspose) {
 }
 
 TEST(Gltf, ReadsStridesOffsetsNormalizedAndQuantizedValues) {
-  Bytes bytes;
+  BinaryPart bytes;
   bytes.add<int16_t>(
       {99, 99, 0, 0, 0, 77, 32767, 0, 0, 77, 32767, -32767, 0, 77, 0, 32767, -32768, 77});
   const auto with = [&](const char* normalized) {
@@ -261,7 +261,7 @@ TEST(Gltf, ReadsStridesOffsetsNormalizedAndQuantizedValues) {
 
 TEST(Gltf, ReadsSparseAccessors) {
   for (const bool onZeros : {false, true}) {
-    Bytes bytes = squarePositions();
+    BinaryPart bytes = squarePositions();
     std::string views = R"({"buffer":0,"byteLength":48},)" + bytes.add<uint16_t>({1, 3}).view();
     views += "," + bytes.add<float>({5, 6, 7, 8, 9, 10}).view();
     const auto mesh =
@@ -281,7 +281,7 @@ TEST(Gltf, ReadsSparseAccessors) {
 }
 
 TEST(Gltf, SaysWhatItDoesNotCarry) {
-  Bytes bytes = squarePositions();
+  BinaryPart bytes = squarePositions();
   const auto mesh = parsed(
       squareGlb(bytes, "", R"(,{"componentType":5126,"count":4,"type":"VEC2"})",
                 R"({"attributes":{"POSITION":0,"TEXCOORD_0":1,"TANGENT":1,"_\u001b":1},"mode":6,)"
@@ -290,7 +290,7 @@ TEST(Gltf, SaysWhatItDoesNotCarry) {
                 R"({"attributes":{"POSITION":0}})",
                 R"("nodes":[{"mesh":0,"skin":0,"translation":[5,5,5]}],"skins":[{"joints":[0]}],)"
                 R"("materials":[{},{}],"images":[{"uri":"a.png"}],"animations":[{}])"));
-  EXPECT_EQ(mesh.positions, kSquare);  // a node with a skin does not move its mesh
+  EXPECT_EQ(mesh.positions, kGltfSquare);  // a node with a skin does not move its mesh
   EXPECT_EQ(mesh.triangles.size(), 3U);
   EXPECT_EQ(
       mesh.notCarried,
@@ -303,7 +303,7 @@ TEST(Gltf, SaysWhatItDoesNotCarry) {
 
 TEST(Gltf, SeamsAreWeldedNotTorn) {
   // Two triangles with a vertex each at both ends of their common edge, of different normals.
-  Bytes bytes;
+  BinaryPart bytes;
   std::string views =
       bytes.add<float>({0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 0, 0, 1, 1, 0, 0, 1, 0}).view();
   views += "," + bytes.add<float>({0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1, 1, 0, 0, 0, 0, 1}).view();
@@ -323,7 +323,7 @@ TEST(Gltf, SeamsAreWeldedNotTorn) {
 }
 
 TEST(Gltf, NamesThePlaceOfWhatIsWrong) {
-  Bytes bytes = squarePositions();
+  BinaryPart bytes = squarePositions();
   bytes.add<uint8_t>({0, 1, 4});
   const std::string indices = R"(,{"bufferView":1,"componentType":5121,"count":3,"type":"SCALAR"})";
   const std::string primitive = R"({"attributes":{"POSITION":0},"indices":1})";
@@ -379,7 +379,7 @@ TEST(Gltf, NamesThePlaceOfWhatIsWrong) {
   EXPECT_EQ(problemOf(R"({"asset":{"version":"1.0"}})"),
             "asset.version: '1.0', but only glTF 2.0 is read");
   EXPECT_EQ(problemOf(std::string(200000, '[')), "byte 64: JSON nested too deeply");
-  Bytes infinite;
+  BinaryPart infinite;
   infinite.add<float>({0, 0, 0, 1, 0, std::numeric_limits<float>::infinity(), 1, 1, 0, 0, 1, 0});
   EXPECT_EQ(problemOf(squareGlb(infinite, "", "", R"({"attributes":{"POSITION":0}})")),
             "meshes[0].primitives[0]: accessors[0]: element 1 is not finite at nodes[0]");
@@ -431,7 +431,7 @@ TEST(Gltf, RefusesCompressedPrimitivesByName) {
 TEST(Gltf, RefusesMoreInstancesThanMemory) {
   std::string nodes = R"("nodes":[{"mesh":0})";
   for (int i = 0; i < 1000; ++i) nodes += R"(,{"mesh":0})";
-  Bytes bytes = squarePositions();
+  BinaryPart bytes = squarePositions();
   const auto problem =
       problemOf(squareGlb(bytes, "", R"(,{"componentType":5126,"count":2000000,"type":"VEC3"})",
                           R"({"attributes":{"POSITION":1}})", nodes + "]"));
@@ -446,7 +446,7 @@ TEST(Gltf, RefusesMoreInstancesThanMemory) {
 }
 
 TEST(Gltf, SurvivesEveryTruncationAndChangedByte) {
-  Bytes bytes = squarePositions();
+  BinaryPart bytes = squarePositions();
   std::string views = "," + bytes.add<uint16_t>({0, 1, 2, 0, 2, 3}).view();
   views += "," + bytes.add<uint8_t>({1, 2}).view();
   const std::string good = squareGlb(
@@ -487,7 +487,7 @@ TEST(Gltf, TakesBuffersFromDataUrisAndFilesBesideOnly) {
            R"("componentType":5126,"count":3,"type":"VEC3"}],"meshes":[{"primitives":[)"
            R"({"attributes":{"POSITION":0}}]}],"nodes":[{"mesh":0}]})";
   };
-  const std::string triangle = Bytes().add<float>({0, 0, 0, 1, 0, 0, 0, 1, 0}).all();
+  const std::string triangle = BinaryPart().add<float>({0, 0, 0, 1, 0, 0, 0, 1, 0}).all();
   const std::string base64 = "AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA";
   for (const char* head : {"data:application/octet-stream;base64,", "data:;base64,"})
     EXPECT_EQ(parsed(document(head + base64)).positions[2], (std::array<double, 3>{0, 1, 0}));

@@ -73,7 +73,7 @@ class HttpFrontTest : public testing::Test {
   std::unique_ptr<CurlUpstream> client_;
 };
 
-UpstreamRequest get(const std::string& target) {
+UpstreamRequest requestFor(const std::string& target) {
   UpstreamRequest request;
   request.target = target;
   return request;
@@ -82,7 +82,7 @@ UpstreamRequest get(const std::string& target) {
 TEST_F(HttpFrontTest, HandsOverTargetsUntouched) {
   start();
   const std::string target = "/a%41/../b?x=%20&y&";
-  const UpstreamResponse response = ask(get(target));
+  const UpstreamResponse response = ask(requestFor(target));
   EXPECT_EQ(response.status, 200U);
   EXPECT_EQ(text(response), "GET " + target + "   ");
   EXPECT_EQ(response.etag, "\"echo\"");
@@ -93,12 +93,12 @@ TEST_F(HttpFrontTest, HandsOverTargetsUntouched) {
 TEST_F(HttpFrontTest, HandsOverLongTargets) {
   start();
   const std::string target = "/" + std::string(50000, 'a');
-  EXPECT_EQ(text(ask(get(target))), "GET " + target + "   ");
+  EXPECT_EQ(text(ask(requestFor(target))), "GET " + target + "   ");
 }
 
 TEST_F(HttpFrontTest, HandsOverContentOfQueries) {
   start({.threads = 2, .waitingThreads = 1});
-  UpstreamRequest request = get("/q");
+  UpstreamRequest request = requestFor("/q");
   request.query = true;
   request.ifNoneMatch = "\"a\"";
   for (const size_t size : {size_t{0}, size_t{1}, size_t{100000}, size_t{1} << 20}) {
@@ -114,21 +114,21 @@ TEST_F(HttpFrontTest, HandsOverContentOfQueries) {
 
 TEST_F(HttpFrontTest, WaitingRequestsDoNotBlockOthers) {
   start({.threads = 1, .waitingThreads = 2});
-  auto first = std::async([&] { return text(ask(get("/wait/1"))); });
+  auto first = std::async([&] { return text(ask(requestFor("/wait/1"))); });
   while (handler_.waiting == 0) std::this_thread::yield();
-  EXPECT_EQ(text(ask(get("/now"))), "GET /now   ");  // hangs if it is blocked
+  EXPECT_EQ(text(ask(requestFor("/now"))), "GET /now   ");  // hangs if it is blocked
   handler_.open();
   EXPECT_EQ(first.get(), "GET /wait/1   ");
 }
 
 TEST_F(HttpFrontTest, SaysWhenTooManyWait) {
   start({.threads = 1, .waitingThreads = 1, .maxWaitingRequests = 0});
-  EXPECT_EQ(ask(get("/wait")).status, 503U);
+  EXPECT_EQ(ask(requestFor("/wait")).status, 503U);
 }
 
 TEST_F(HttpFrontTest, FinishesWaitingAnswersWhenItEnds) {
   start({.threads = 1, .waitingThreads = 1});
-  auto answer = std::async([&] { return text(ask(get("/wait"))); });
+  auto answer = std::async([&] { return text(ask(requestFor("/wait"))); });
   while (handler_.waiting == 0) std::this_thread::yield();
   auto end = std::async([&] { front_.reset(); });
   handler_.open();
@@ -145,7 +145,7 @@ TEST_F(HttpFrontTest, EndsAtAnyMomentOfAnAnswer) {
     auto front = *HttpFront::start(handler, options);
     const auto client = *CurlUpstream::make(
         {.url = "http://127.0.0.1:" + std::to_string(front->port()) + "/", .via = "1.1 test"});
-    auto answer = std::async([&] { return client->send(get("/wait")); });
+    auto answer = std::async([&] { return client->send(requestFor("/wait")); });
     while (handler.waiting == 0) std::this_thread::yield();
     auto end = std::async([&] { front.reset(); });
     std::this_thread::sleep_for(std::chrono::microseconds(20 * (i % 20)));
@@ -158,7 +158,7 @@ TEST_F(HttpFrontTest, EndsAtAnyMomentOfAnAnswer) {
 
 TEST_F(HttpFrontTest, TheClientRefusesResponsesThatAreTooLong) {
   start();
-  UpstreamRequest request = get("/" + std::string(1000, 'a'));
+  UpstreamRequest request = requestFor("/" + std::string(1000, 'a'));
   request.maxBytes = 100;
   const auto response = client_->send(request);
   ASSERT_FALSE(response);
@@ -168,7 +168,7 @@ TEST_F(HttpFrontTest, TheClientRefusesResponsesThatAreTooLong) {
 TEST_F(HttpFrontTest, TheClientReportsAnAbsentServer) {
   start();
   front_.reset();
-  const auto response = client_->send(get("/"));
+  const auto response = client_->send(requestFor("/"));
   ASSERT_FALSE(response);
   EXPECT_EQ(response.error().code, ErrorCode::unavailable);
 }
