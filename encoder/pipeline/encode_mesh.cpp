@@ -74,7 +74,8 @@ Result<EncodedMesh> encodeMesh(IndexedMesh mesh, const EncodeOptions& options,
 
   clock.begin("clean");
   report.notCarried = std::move(mesh.notCarried);
-  const MeshSize size{mesh.positions.size(), mesh.triangles.size()};
+  const MeshSize size{mesh.positions.size(), mesh.triangles.size(), !mesh.colours.empty(),
+                      !mesh.normals.empty()};
   if (auto fit = fits(size, 0, options); !fit) return tl::unexpected(fit.error());
   report.estimatedPeakBytes = estimateMemory(size, 0).peak();
   auto closed = closeMesh(std::move(mesh), report.cleaning);
@@ -97,7 +98,8 @@ Result<EncodedMesh> encodeMesh(IndexedMesh mesh, const EncodeOptions& options,
   release(closed->colours);
   release(closed->normals);
   // Cutting and closing may have made more of both.
-  const MeshSize closedSize{positions.size() + closed->virtualCount, closed->triangles.size()};
+  const MeshSize closedSize{positions.size() + closed->virtualCount, closed->triangles.size(),
+                            layout.colours, layout.normalBits != 0};
   if (auto fit = fits(closedSize, 0, options); !fit) return tl::unexpected(fit.error());
 
   clock.begin("simplify");

@@ -5,6 +5,7 @@
 #include <cstring>
 #include <fstream>
 #include <string>
+#include <string_view>
 #include <system_error>
 
 #include "shared/mesh_files/ply_header.h"
@@ -22,6 +23,11 @@ bool sharesNoVertices(const MeshSize& size) {
   return size.vertices > 2 * size.triangles;
 }
 
+bool has(const PlyElement& element, std::string_view property) {
+  return std::any_of(element.properties.begin(), element.properties.end(),
+                     [&](const PlyProperty& p) { return p.name == property; });
+}
+
 MeshSize inPly(const PlyHeader& header, uint64_t fileBytes) {
   MeshSize size;
   for (const PlyElement& element : header.elements) {
@@ -31,7 +37,11 @@ MeshSize inPly(const PlyHeader& header, uint64_t fileBytes) {
                        ? 2
                        : byteLength(property.countType.value_or(property.type));
     const uint64_t count = std::min(element.count, fileBytes / std::max<uint64_t>(bytesEach, 1));
-    if (element.name == "vertex") size.vertices = count;
+    if (element.name == "vertex") {
+      size.vertices = count;
+      size.colours = has(element, "red");
+      size.normals = has(element, "nx");
+    }
     if (element.name == "face") size.triangles = count;
   }
   // Polygons and strips become more triangles than there are rows.
@@ -51,12 +61,16 @@ MemoryEstimate estimateMemory(const MeshSize& size, uint64_t fileBytes) {
   // About half as many vertices as triangles are left when corners have been welded.
   const uint64_t v = sharesNoVertices(size) ? f / 2 : input;
   const uint64_t welding = sharesNoVertices(size) ? 20 * input : 0;
+  const uint64_t readAttributes = (size.colours ? 4 : 0) + (size.normals ? 12 : 0);
+  const uint64_t attributes = readAttributes > 0 ? 8 * v : 0;
   MemoryEstimate out;
-  out.read = kProgram + fileBytes + 24 * input + 12 * f + welding;
-  out.clean = kProgram + std::max(28 * input + 28 * v + 54 * f, 44 * input + 24 * v + 12 * f);
-  out.simplify = kProgram + 12 * v + 12 * f + std::max(16 * v + 84 * f, 96 * v + 48 * f);
-  out.hierarchy = kProgram + 92 * v + 12 * f;
-  out.code = kProgram + 104 * v + 40 * f;
+  out.read = kProgram + fileBytes + (24 + readAttributes) * input + 12 * f + welding;
+  out.clean = kProgram + readAttributes * input +
+              std::max(28 * input + 28 * v + 54 * f, 44 * input + 24 * v + 12 * f);
+  out.simplify =
+      kProgram + 12 * v + 12 * f + attributes + std::max(16 * v + 84 * f, 96 * v + 48 * f);
+  out.hierarchy = kProgram + 92 * v + 12 * f + attributes;
+  out.code = kProgram + 104 * v + 40 * f + attributes;
   return out;
 }
 

@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <memory>
 
+#include "shared/mesh_files/file_extension.h"
+
 namespace meshfront {
 namespace {
 
@@ -201,9 +203,7 @@ Compression compressionOf(std::string_view file) {
 }
 
 Compression compressionNamed(const std::filesystem::path& path) {
-  std::string extension = path.extension().string();
-  for (char& c : extension)
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  const std::string extension = lowerCaseExtension(path);
   if (extension == ".gz") return Compression::gzip;
   if (extension == ".xz") return Compression::xz;
   return extension == ".zst" ? Compression::zstd : Compression::none;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "shared/mesh_files/vector_length.h"
+
 namespace meshfront {
 namespace {
 
@@ -95,7 +97,7 @@ std::array<double, 3> transformedNormal(const GltfTransform& t,
   std::array<double, 3> out{};
   for (size_t i = 0; i < 3; ++i)
     for (size_t r = 0; r < 3; ++r) out[r] += cofactors[i][r] * normal[i];
-  const double length = std::hypot(out[0], out[1], out[2]) * (determinant(t) < 0 ? -1 : 1);
+  const double length = lengthOf(out) * (determinant(t) < 0 ? -1 : 1);
   if (length == 0 || !std::isfinite(length)) return {};
   for (double& component : out) component /= length;
   return out;

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "shared/mesh_files/not_carried.h"
+#include "shared/mesh_files/vector_length.h"
 
 namespace meshfront {
 namespace {
@@ -60,7 +61,7 @@ GltfTransform fromMatrix(const std::array<double, 16>& m) {
 GltfTransform fromParts(const std::array<double, 3>& translation, std::array<double, 4> rotation,
                         const std::array<double, 3>& scale) {
   auto& [x, y, z, w] = rotation;
-  const double length = std::hypot(std::hypot(x, y), std::hypot(z, w));
+  const double length = lengthOf(rotation);
   if (length > 0 && length != 1)
     for (double& component : rotation) component /= length;
   if (!(length > 0)) rotation = {0, 0, 0, 1};

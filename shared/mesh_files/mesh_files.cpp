@@ -8,6 +8,7 @@
 #include "shared/mesh_files/available_memory.h"
 #include "shared/mesh_files/decompress.h"
 #include "shared/mesh_files/file_bytes.h"
+#include "shared/mesh_files/file_extension.h"
 #include "shared/mesh_files/mesh_readers.h"
 #include "shared/mesh_files/text_cursor.h"
 
@@ -15,9 +16,7 @@ namespace meshfront {
 namespace {
 
 std::optional<MeshFormat> formatByExtension(const std::filesystem::path& path) {
-  std::string extension = path.extension().string();
-  for (char& c : extension)
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  const std::string extension = lowerCaseExtension(path);
   if (extension == ".ply") return MeshFormat::ply;
   if (extension == ".obj") return MeshFormat::obj;
   if (extension == ".stl") return MeshFormat::stl;

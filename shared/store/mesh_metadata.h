@@ -27,7 +27,7 @@ struct MeshMetadata {
   Quantization quantization;
   std::array<double, 3> boundsMin{};  // world
   std::array<double, 3> boundsMax{};
-  std::vector<std::string> attributes;  // beside positions; empty so far
+  std::vector<std::string> attributes;  // beside positions: of "colour" and "normal"
   uint64_t baseBytes = 0;
   uint64_t recordBytes = 0;  // all records, bit-packed
   uint64_t chunkBytes = 0;

@@ -34,6 +34,31 @@ TEST(MemoryEstimate, IsTheLargestPhase) {
   EXPECT_GT(estimateMemory({uint64_t{1} << 30, uint64_t{1} << 31}, 0).peak(), uint64_t{200} << 30);
 }
 
+TEST(MemoryEstimate, CountsColoursAndNormals) {
+  const MeshSize plain{1000000, 2000000};
+  MeshSize full = plain;
+  full.colours = full.normals = true;
+  const MemoryEstimate before = estimateMemory(plain, 0);
+  const MemoryEstimate after = estimateMemory(full, 0);
+  EXPECT_EQ(after.read - before.read, 16000000U);
+  EXPECT_EQ(after.clean - before.clean, 16000000U);
+  EXPECT_EQ(after.simplify - before.simplify, 8000000U);
+  EXPECT_EQ(after.code - before.code, 8000000U);
+}
+
+TEST(MemoryEstimate, ReadsOfAttributesInAPly) {
+  const TemporaryFolder folder;
+  put(folder / "a.ply",
+      "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\n"
+      "property float z\nproperty float nx\nproperty float ny\nproperty float nz\n"
+      "property uchar red\nproperty uchar green\nproperty uchar blue\nelement face 0\n"
+      "property list uchar int vertex_indices\nend_header\n0 0 0 0 0 1 9 9 9\n");
+  const auto size = promisedSize(folder / "a.ply");
+  ASSERT_TRUE(size);
+  EXPECT_TRUE(size->colours);
+  EXPECT_TRUE(size->normals);
+}
+
 TEST(MemoryEstimate, ReadsWhatAPlyPromises) {
   const TemporaryFolder folder;
   const FractalSphere sphere(5000, 1);

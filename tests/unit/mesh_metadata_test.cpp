@@ -19,7 +19,7 @@ MeshMetadata example() {
   m.quantization = {14, {-0.1, 0.03, 1e-17}, 0.0000095367431640625};
   m.boundsMin = {-0.1, 0.03, 0};
   m.boundsMax = {0.1 + 0.2, 1, 2};
-  m.attributes = {"color"};
+  m.attributes = {"colour", "normal"};
   m.baseBytes = 3210;
   m.recordBytes = 160000;
   m.chunkBytes = 162000;

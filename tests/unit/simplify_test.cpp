@@ -11,36 +11,16 @@
 #include <set>
 #include <string>
 
-#include "encoder/cleaning/close_mesh.h"
 #include "shared/hierarchy/node_id.h"
 #include "tests/data/closed_manifold_check.h"
 #include "tests/data/mesh_shapes.h"
 #include "tests/data/nasty_meshes.h"
+#include "tests/unit/face_set_model.h"
 
 namespace meshfront {
 namespace {
 
-struct Input {
-  std::vector<GridPosition> positions;
-  uint32_t virtualCount = 0;
-  std::vector<Triangle> triangles;
-  size_t realTriangleCount = 0;
-};
-
-Input closed(const IndexedMesh& mesh, unsigned bits = kDefaultQuantizationBits) {
-  CleaningReport report;
-  const Result<ClosedMesh> result = closeMesh(mesh, report);
-  Input input;
-  if (!result) return input;
-  const Quantization grid = quantizationFor(result->positions, bits);
-  for (const auto& p : result->positions) input.positions.push_back(grid.toGrid(p));
-  input.virtualCount = result->virtualCount;
-  input.triangles = result->triangles;
-  input.realTriangleCount = result->realTriangleCount;
-  return input;
-}
-
-Simplification simplify(const Input& input, const SimplifyOptions& options = {}) {
+Simplification simplify(const SimplifyInput& input, const SimplifyOptions& options = {}) {
   return meshfront::simplify(input.positions, input.virtualCount, input.triangles,
                              input.realTriangleCount, options);
 }
@@ -51,131 +31,6 @@ SimplifyOptions options(double baseFraction, unsigned balance) {
   result.balance = balance;
   return result;
 }
-
-// Replays a log on sets of faces: slow, and nothing in common with the simplifier.
-class FaceSetModel {
- public:
-  explicit FaceSetModel(const Input& input)
-      : realCount_(input.positions.size()),
-        faces_(input.positions.size() + input.virtualCount),
-        heights_(faces_.size(), 0) {
-    for (const Triangle& t : input.triangles) {
-      for (const uint32_t v : t) faces_[v].insert(fromSmallest(t));
-    }
-  }
-
-  // Empty, or what rule the collapse breaks.
-  [[nodiscard]] std::string whyRefused(const Collapse& collapse) const {
-    const auto [kept, removed] = collapse;
-    if (kept >= realCount_ || removed >= realCount_) return "virtual vertex";
-    if (kept == removed || faces_[removed].empty() || faces_[kept].empty()) return "vertex is gone";
-    const std::set<uint32_t> a = neighbours(kept);
-    const std::set<uint32_t> b = neighbours(removed);
-    if (!a.contains(removed)) return "no edge";
-    std::set<uint32_t> common;
-    std::set_intersection(a.begin(), a.end(), b.begin(), b.end(),
-                          std::inserter(common, common.begin()));
-    if (common.size() != 2) return "link condition";
-    if (a.size() == 3 && b.size() == 3) return "tetrahedron";
-    if (std::max(heights_[kept], heights_[removed]) >= kMaxDepth) return "too deep";
-    return {};
-  }
-  // The same, and does it if allowed.
-  std::string apply(const Collapse& collapse) {
-    if (std::string why = whyRefused(collapse); !why.empty()) return why;
-    const auto [kept, removed] = collapse;
-    heights_[kept] = 1 + std::max(heights_[kept], heights_[removed]);
-    const std::set<Triangle> moved = faces_[removed];
-    for (const Triangle& t : moved) {
-      for (const uint32_t v : t) faces_[v].erase(t);
-      Triangle renamed = t;
-      std::replace(renamed.begin(), renamed.end(), removed, kept);
-      if (std::count(renamed.begin(), renamed.end(), kept) > 1) continue;
-      for (const uint32_t v : renamed) faces_[v].insert(fromSmallest(renamed));
-    }
-    return {};
-  }
-
-  [[nodiscard]] std::vector<Triangle> triangles() const {
-    std::set<Triangle> all;
-    for (const auto& faces : faces_) all.insert(faces.begin(), faces.end());
-    return {all.begin(), all.end()};
-  }
-  [[nodiscard]] std::string whyNotManifold() const {
-    std::vector<Triangle> triangles = this->triangles();
-    std::map<uint32_t, uint32_t> compact;
-    for (Triangle& t : triangles) {
-      for (uint32_t& v : t) {
-        v = compact.try_emplace(v, static_cast<uint32_t>(compact.size())).first->second;
-      }
-    }
-    return whyNotClosedManifold(compact.size(), triangles);
-  }
-  // Whether some edge between real vertices could still go.
-  [[nodiscard]] bool canCollapse() const {
-    for (const Triangle& t : triangles()) {
-      for (size_t i = 0; i < 3; ++i) {
-        if (whyRefused({t[i], t[(i + 1) % 3]}).empty()) return true;
-      }
-    }
-    return false;
-  }
-  // What sweepEndState() counts, with no limit on valences.
-  [[nodiscard]] EndState endState() const {
-    EndState out;
-    int64_t euler = 0;
-    std::vector<bool> seen(faces_.size());
-    for (uint32_t start = 0; start < faces_.size(); ++start) {
-      if (faces_[start].empty() || seen[start]) continue;
-      std::set<uint32_t> part;
-      std::vector<uint32_t> waiting{start};
-      while (!waiting.empty()) {
-        const uint32_t v = waiting.back();
-        waiting.pop_back();
-        if (!part.insert(v).second) continue;
-        seen[v] = true;
-        for (const uint32_t w : neighbours(v)) waiting.push_back(w);
-      }
-      ++out.components;
-      if (part.size() == 4) ++out.smallestComponents;
-      size_t halfEdges = 0;
-      for (const uint32_t v : part) {
-        halfEdges += neighbours(v).size();
-        if (v >= realCount_) continue;
-        for (const uint32_t w : neighbours(v)) {
-          ++out.directions;
-          const std::string why = whyRefused({w, v});
-          if (part.size() == 4) ++out.smallestComponent;
-          if (part.size() == 4) continue;
-          if (why == "virtual vertex") ++out.virtualVertex;
-          if (why == "link condition") ++out.link;
-        }
-      }
-      euler += static_cast<int64_t>(part.size()) - static_cast<int64_t>(halfEdges / 6);
-    }
-    out.handles = static_cast<uint64_t>((2 * static_cast<int64_t>(out.components) - euler) / 2);
-    return out;
-  }
-  [[nodiscard]] unsigned maxHeight() const {
-    return *std::max_element(heights_.begin(), heights_.end());
-  }
-
- private:
-  static Triangle fromSmallest(Triangle t) {
-    std::rotate(t.begin(), std::min_element(t.begin(), t.end()), t.end());
-    return t;
-  }
-  [[nodiscard]] std::set<uint32_t> neighbours(uint32_t vertex) const {
-    std::set<uint32_t> result;
-    for (const Triangle& t : faces_[vertex]) result.insert(t.begin(), t.end());
-    result.erase(vertex);
-    return result;
-  }
-
-  size_t realCount_;
-  std::vector<std::set<Triangle>> faces_;  // by corner; each from its smallest corner
-  std::vector<unsigned> heights_;
-};
 
 void expectSame(const EndState& actual, const EndState& expected) {
   EXPECT_EQ(actual.directions, expected.directions);
@@ -190,7 +45,8 @@ void expectSame(const EndState& actual, const EndState& expected) {
   }
 }
 
-void expectValid(const Input& input, const Simplification& result, const std::string& name) {
+void expectValid(const SimplifyInput& input, const Simplification& result,
+                 const std::string& name) {
   SCOPED_TRACE(name);
   FaceSetModel model(input);
   for (size_t i = 0; i < result.collapses.size(); ++i) {
@@ -214,7 +70,7 @@ TEST(Simplify, LogsAreValidOnNastyMeshes) {
   size_t collapses = 0;
   for (const NastyMesh& nasty : nastyMeshes()) {
     if (nasty.vanishes || nasty.mesh.triangles.size() > 20000) continue;
-    const Input input = closed(nasty.mesh);
+    const SimplifyInput input = closedInput(nasty.mesh);
     const Simplification result = simplify(input, options(0, 1));
     expectValid(input, result, nasty.name);
     collapses += result.collapses.size();
@@ -224,14 +80,14 @@ TEST(Simplify, LogsAreValidOnNastyMeshes) {
 
 TEST(Simplify, LogsAreValidOnRandomSoups) {
   for (uint32_t seed = 0; seed < 20; ++seed) {
-    const Input input = closed(randomSoup(seed, 10 + 10 * seed, 300));
+    const SimplifyInput input = closedInput(randomSoup(seed, 10 + 10 * seed, 300));
     ASSERT_FALSE(input.triangles.empty());
     expectValid(input, simplify(input, options(0, seed % 3)), "seed " + std::to_string(seed));
   }
 }
 
 TEST(Simplify, ReachesTheBaseAskedFor) {
-  const Input input = closed(sphere(4));  // 1026 vertices
+  const SimplifyInput input = closedInput(sphere(4));  // 1026 vertices
   for (const double fraction : {1.0, 0.5, 0.1, 0.02}) {
     const Simplification result = simplify(input, options(fraction, 1));
     expectValid(input, result, std::to_string(fraction));
@@ -241,7 +97,7 @@ TEST(Simplify, ReachesTheBaseAskedFor) {
 }
 
 TEST(Simplify, TakesAnyFractionForAValidOne) {
-  const Input input = closed(sphere(2));
+  const SimplifyInput input = closedInput(sphere(2));
   const double nan = std::numeric_limits<double>::quiet_NaN();
   for (const double fraction : {0.0, -1.0, nan}) {
     EXPECT_EQ(simplify(input, options(fraction, 1)).report.baseVertices, 4U);
@@ -252,7 +108,7 @@ TEST(Simplify, TakesAnyFractionForAValidOne) {
 TEST(Simplify, LeavesTetrahedraAlone) {
   IndexedMesh mesh;
   for (int i = 0; i < 3; ++i) appendMesh(mesh, tetrahedron(), {3.0 * i, 0, 0});
-  const Simplification result = simplify(closed(mesh), options(0, 1));
+  const Simplification result = simplify(closedInput(mesh), options(0, 1));
   EXPECT_TRUE(result.collapses.empty());
   EXPECT_EQ(result.report.why, StopReason::noValidCollapse);
   EXPECT_EQ(result.report.baseVertices, 12U);
@@ -261,14 +117,14 @@ TEST(Simplify, LeavesTetrahedraAlone) {
 TEST(Simplify, ReducesEachComponentToATetrahedron) {
   IndexedMesh mesh;
   for (int i = 0; i < 20; ++i) appendMesh(mesh, sphere(1), {3.0 * i, 0, 0});
-  const Input input = closed(mesh);
+  const SimplifyInput input = closedInput(mesh);
   const Simplification result = simplify(input, options(0, 1));
   expectValid(input, result, "spheres");
   EXPECT_EQ(result.report.baseVertices, 80U);
 }
 
 TEST(Simplify, KeepsTheGenusOfATorus) {
-  const Input input = closed(torus(24, 12));
+  const SimplifyInput input = closedInput(torus(24, 12));
   const Simplification result = simplify(input, options(0, 1));
   expectValid(input, result, "torus");
   EXPECT_GE(result.report.baseVertices, 7U);  // the smallest triangulation there is
@@ -278,7 +134,7 @@ TEST(Simplify, KeepsTheGenusOfATorus) {
 TEST(Simplify, TellsThatTopologyHoldsWhatIsLeft) {
   IndexedMesh mesh = torus(24, 12);
   for (int i = 0; i < 5; ++i) appendMesh(mesh, tetrahedron(), {10.0 + 3 * i, 0, 0});
-  const EndState end = simplify(closed(mesh), options(0, 1)).report.endState;
+  const EndState end = simplify(closedInput(mesh), options(0, 1)).report.endState;
   EXPECT_EQ(end.components, 6U);
   EXPECT_EQ(end.smallestComponents, 5U);
   EXPECT_EQ(end.smallestComponent, 5U * 12);
@@ -292,7 +148,7 @@ TEST(Simplify, TellsThatDepthHoldsWhatIsLeft) {
   // A three-sided tube whose rings stand ever farther apart: from the dense end on, without
   // balance, one tree swallows one vertex after another.
   constexpr uint32_t kRings = 250;
-  Input input;
+  SimplifyInput input;
   double at = 0;
   for (uint32_t ring = 0; ring < kRings; ++ring) {
     const auto x = static_cast<int32_t>(std::lround(at));
@@ -318,7 +174,7 @@ TEST(Simplify, TellsThatDepthHoldsWhatIsLeft) {
 }
 
 TEST(Simplify, TellsThatValenceHoldsWhatIsLeft) {
-  const Input input = closed(torus(24, 12));  // all vertices have six neighbours
+  const SimplifyInput input = closedInput(torus(24, 12));  // all vertices have six neighbours
   SimplifyOptions limited = options(0, 1);
   limited.maxValence = 5;
   const SimplifyReport report = simplify(input, limited).report;
@@ -337,7 +193,7 @@ TEST(Simplify, TellsThatValenceHoldsWhatIsLeft) {
 TEST(Simplify, TakesHubsIfAllowedTo) {
   // A cone. A hub in the flat bottom, close to the outline, is the cheapest to remove.
   constexpr uint32_t kAround = 200;
-  Input input;
+  SimplifyInput input;
   for (uint32_t i = 0; i < kAround; ++i) {
     const double angle = 2 * 3.14159265358979 * i / kAround;
     input.positions.push_back({static_cast<int>(std::lround(8000 + 8000 * std::cos(angle))),
@@ -362,7 +218,7 @@ TEST(Simplify, TakesHubsIfAllowedTo) {
 }
 
 TEST(Simplify, IsTheSameEachTime) {
-  const Input input = closed(gridPatch(30, 30));
+  const SimplifyInput input = closedInput(gridPatch(30, 30));
   const Simplification first = simplify(input);
   const Simplification second = simplify(input);
   ASSERT_EQ(first.collapses.size(), second.collapses.size());
@@ -377,7 +233,7 @@ TEST(Simplify, PutsTheFlatBeforeTheBent) {
   IndexedMesh mesh = gridPatch(20, 20);
   const uint32_t tip = 21 * 10 + 10;
   mesh.positions[tip][2] = 5;
-  const Input input = closed(mesh);
+  const SimplifyInput input = closedInput(mesh);
   ASSERT_GT(input.positions[tip][2], 0);
   const Simplification result = simplify(input, options(0.04, 1));
   EXPECT_EQ(result.report.why, StopReason::reachedBase);
@@ -385,7 +241,7 @@ TEST(Simplify, PutsTheFlatBeforeTheBent) {
 }
 
 TEST(Simplify, KeepsOutlines) {
-  const Input input = closed(gridPatch(20, 20), 10);
+  const SimplifyInput input = closedInput(gridPatch(20, 20), 10);
   const Simplification result = simplify(input, options(0.05, 1));
   expectValid(input, result, "plane");
   std::vector<bool> alive(input.positions.size(), true);
@@ -409,7 +265,7 @@ TEST(Simplify, KeepsOutlines) {
 }
 
 TEST(Simplify, TurnsNoFaceOverUnlessNothingElseIsLeft) {
-  const Input input = closed(gridPatch(24, 24), 12);
+  const SimplifyInput input = closedInput(gridPatch(24, 24), 12);
   const Simplification result = simplify(input, options(0.05, 0));
   EXPECT_EQ(result.report.acceptedFlips, 0U);
   FaceSetModel model(input);
@@ -425,7 +281,7 @@ TEST(Simplify, TurnsNoFaceOverUnlessNothingElseIsLeft) {
 
 TEST(Simplify, EndsWhenAllPointsAreEqual) {
   for (unsigned balance : {0U, 1U, 2U}) {
-    Input input = closed(sphere(4));
+    SimplifyInput input = closedInput(sphere(4));
     for (GridPosition& p : input.positions) p = {5, 5, 5};
     const Simplification result = simplify(input, options(0, balance));
     expectValid(input, result, "balance " + std::to_string(balance));
@@ -433,7 +289,7 @@ TEST(Simplify, EndsWhenAllPointsAreEqual) {
 }
 
 TEST(Simplify, BalanceKeepsTreesShallow) {
-  const Input input = closed(gridPatch(60, 60));
+  const SimplifyInput input = closedInput(gridPatch(60, 60));
   const unsigned loose = simplify(input, options(0, 0)).report.maxHeight;
   const unsigned balanced = simplify(input, options(0, 1)).report.maxHeight;
   const unsigned tight = simplify(input, options(0, 2)).report.maxHeight;
@@ -445,7 +301,7 @@ TEST(Simplify, BalanceKeepsTreesShallow) {
 TEST(Simplify, CopesWithOneVertexOfHugeValence) {
   // Two tips over a ring: both have 5,000 neighbours.
   constexpr uint32_t kAround = 5000;
-  Input input;
+  SimplifyInput input;
   for (uint32_t i = 0; i < kAround; ++i) {
     const double angle = 2 * 3.14159265358979 * i / kAround;
     input.positions.push_back({static_cast<int>(std::lround(8000 + 8000 * std::cos(angle))),
@@ -471,7 +327,7 @@ TEST(Simplify, KeepsTheLinkConditionAtHugeValences) {
   constexpr uint32_t kUpper = kAround;
   constexpr uint32_t kLower = kAround + 1;
   for (uint32_t seed = 0; seed < 10; ++seed) {
-    Input input;
+    SimplifyInput input;
     std::mt19937 random(seed);
     for (uint32_t v = 0; v < kAround + 2; ++v) {
       const auto coordinate = [&] { return static_cast<int32_t>(random() % 20); };
@@ -493,7 +349,7 @@ TEST(Simplify, KeepsTheLinkConditionAtHugeValences) {
 // Whatever is in the way at first is tried again when the neighbourhood has changed.
 TEST(Simplify, TriesParkedVerticesAgain) {
   for (uint32_t seed = 0; seed < 40; ++seed) {
-    Input input = closed(seed % 2 == 0 ? torus(9, 3 + seed % 5) : sphere(2));
+    SimplifyInput input = closedInput(seed % 2 == 0 ? torus(9, 3 + seed % 5) : sphere(2));
     std::mt19937 random(seed);
     for (GridPosition& p : input.positions) {
       for (int32_t& c : p) c = static_cast<int32_t>(random() % 1000);
@@ -503,8 +359,8 @@ TEST(Simplify, TriesParkedVerticesAgain) {
 }
 
 TEST(Simplify, RefusesWhatIsNotClosed) {
-  const Input whole = closed(sphere(2));
-  Input broken = whole;
+  const SimplifyInput whole = closedInput(sphere(2));
+  SimplifyInput broken = whole;
   broken.triangles.pop_back();
   EXPECT_EQ(simplify(broken).report.why, StopReason::notClosed);
   broken.triangles.pop_back();  // an even number of corners again
@@ -528,13 +384,13 @@ TEST(Simplify, RefusesWhatIsNotClosed) {
 }
 
 TEST(Simplify, TakesAnEmptyMesh) {
-  const Simplification result = simplify(Input{});
+  const Simplification result = simplify(SimplifyInput{});
   EXPECT_TRUE(result.collapses.empty());
   EXPECT_EQ(result.report.baseVertices, 0U);
 }
 
 TEST(Simplify, TellsItsProgress) {
-  const Input input = closed(gridPatch(200, 200));
+  const SimplifyInput input = closedInput(gridPatch(200, 200));
   std::vector<size_t> told;
   const Simplification result =
       meshfront::simplify(input.positions, input.virtualCount, input.triangles,
