@@ -2,7 +2,7 @@
 //
 //   split_fields, cut_regions -> code tables -> records -> chunks
 //
-// Peak memory: about 90 bytes a vertex, the input and the forest aside.
+// Peak memory: about 194 bytes a vertex, input and forest included (scans of 0.1 to 1.4 million).
 #pragma once
 
 #include <cstdint>

@@ -35,7 +35,7 @@ struct EncodeOptions {
 struct PhaseTime {
   std::string name;
   double seconds = 0;
-  uint64_t peakBytes = 0;  // of the process's memory so far, when the phase ended
+  uint64_t peakBytes = 0;  // the most memory of the process during the phase
 };
 
 struct EncodingReport {

@@ -70,7 +70,7 @@ MemoryEstimate estimateMemory(const MeshSize& size, uint64_t fileBytes) {
   out.simplify =
       kProgram + 12 * v + 12 * f + attributes + std::max(16 * v + 84 * f, 96 * v + 48 * f);
   out.hierarchy = kProgram + 92 * v + 12 * f + attributes;
-  out.code = kProgram + 104 * v + 40 * f + attributes;
+  out.code = kProgram + 110 * v + 42 * f + attributes;
   return out;
 }
 

@@ -24,6 +24,7 @@ class PhaseClock {
     end();
     phases_.push_back({name, 0, 0});
     running_ = true;
+    forgetPeakMemory();
     started_ = std::chrono::steady_clock::now();
     report(0);
   }
