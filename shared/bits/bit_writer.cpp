@@ -6,7 +6,7 @@
 
 namespace meshfront {
 
-void BitWriter::append(std::span<const uint8_t> source, uint64_t bitOffset, uint64_t bitCount) {
+void BitWriter::appendLong(std::span<const uint8_t> source, uint64_t bitOffset, uint64_t bitCount) {
   BitReader reader(source, bitOffset, bitOffset + bitCount);
   while (bitCount > 0) {
     const auto step = static_cast<unsigned>(std::min<uint64_t>(bitCount, 56));
@@ -15,8 +15,13 @@ void BitWriter::append(std::span<const uint8_t> source, uint64_t bitOffset, uint
   }
 }
 
+void BitWriter::appendPending(std::vector<uint8_t>& out) const {
+  for (unsigned bits = 0; bits < pendingBits_; bits += 8)
+    out.push_back(static_cast<uint8_t>(pending_ >> (56 - bits)));
+}
+
 std::vector<uint8_t> BitWriter::take() {
-  if (pendingBits_ > 0) bytes_.push_back(static_cast<uint8_t>(pending_ >> 56));
+  appendPending(bytes_);
   std::vector<uint8_t> out = std::move(bytes_);
   clear();
   return out;
@@ -24,7 +29,7 @@ std::vector<uint8_t> BitWriter::take() {
 
 std::vector<uint8_t> BitWriter::padded() const {
   std::vector<uint8_t> out = bytes_;
-  if (pendingBits_ > 0) out.push_back(static_cast<uint8_t>(pending_ >> 56));
+  appendPending(out);
   return out;
 }
 

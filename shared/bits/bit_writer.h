@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <cstring>
 #include <span>
 #include <vector>
 
@@ -13,19 +14,30 @@ class BitWriter {
   void write(uint64_t value, unsigned count) {
     if (count == 0) return;
     value &= (uint64_t{1} << count) - 1;
-    pending_ |= value << (64 - pendingBits_ - count);
-    pendingBits_ += count;
-    while (pendingBits_ >= 8) {
-      bytes_.push_back(static_cast<uint8_t>(pending_ >> 56));
-      pending_ <<= 8;
-      pendingBits_ -= 8;
+    const unsigned room = 64 - pendingBits_;
+    if (count < room) {
+      pending_ |= value << (room - count);
+      pendingBits_ += count;
+      return;
     }
+    const unsigned rest = count - room;
+    flush(pending_ | value >> rest);
+    pending_ = rest > 0 ? value << (64 - rest) : 0;
+    pendingBits_ = rest;
   }
   void writeBit(bool bit) { write(bit ? 1 : 0, 1); }
 
   // Appends `bitCount` bits of `source`, beginning at its bit `bitOffset`. The range must lie
   // inside.
-  void append(std::span<const uint8_t> source, uint64_t bitOffset, uint64_t bitCount);
+  void append(std::span<const uint8_t> source, uint64_t bitOffset, uint64_t bitCount) {
+    const uint64_t first = bitOffset >> 3;
+    if (bitCount - 1 >= 57 || first + 8 > source.size())
+      return appendLong(source, bitOffset, bitCount);
+    uint64_t word = 0;
+    std::memcpy(&word, source.data() + first, 8);
+    word = __builtin_bswap64(word) << (bitOffset & 7);
+    write(word >> (64 - bitCount), static_cast<unsigned>(bitCount));
+  }
 
   [[nodiscard]] uint64_t bitCount() const { return bytes_.size() * 8 + pendingBits_; }
 
@@ -37,9 +49,18 @@ class BitWriter {
   void clear();
 
  private:
-  std::vector<uint8_t> bytes_;
-  uint64_t pending_ = 0;  // left-aligned
-  unsigned pendingBits_ = 0;
+  void flush(uint64_t word) {
+    const size_t at = bytes_.size();
+    bytes_.resize(at + 8);
+    word = __builtin_bswap64(word);
+    std::memcpy(bytes_.data() + at, &word, 8);
+  }
+  void appendLong(std::span<const uint8_t> source, uint64_t bitOffset, uint64_t bitCount);
+  void appendPending(std::vector<uint8_t>& out) const;
+
+  std::vector<uint8_t> bytes_;  // whole words
+  uint64_t pending_ = 0;        // left-aligned
+  unsigned pendingBits_ = 0;    // 0 .. 63
 };
 
 }  // namespace meshfront

@@ -1,5 +1,7 @@
 #include "shared/hierarchy/tree_bitstring.h"
 
+#include <array>
+
 #include "shared/bits/integer_codes.h"
 
 namespace meshfront {
@@ -33,6 +35,44 @@ void writeTree(BitWriter& out, std::span<const NodeId> nodes) {
   }
 }
 
+// Appends the wanted nodes of one tree to the first `count` of `nodes`, which may be longer than
+// that. Visits come 28 at a time and without branches on their bits, which cannot be predicted.
+Result<void> readTree(BitReader& in, uint32_t tree, size_t maxNodes, std::vector<NodeId>& nodes,
+                      size_t& count) {
+  constexpr unsigned kVisits = 28;
+  struct Place {
+    uint64_t path;
+    unsigned depth;
+  };
+  std::array<Place, kMaxDepth + 3>
+      stack;  // a right sibling for each depth, the node, room to spare
+  stack[0] = {0, 0};
+  unsigned pending = 1;
+  while (pending > 0) {
+    uint64_t bits = in.peek(2 * kVisits) << (64 - 2 * kVisits);
+    if (nodes.size() < count + kVisits) nodes.resize(2 * nodes.size() + kVisits);
+    unsigned visits = 0;
+    for (; visits < kVisits && pending > 0; ++visits) {
+      const Place at = stack[--pending];
+      const auto visit = static_cast<unsigned>(bits >> 62);
+      bits <<= 2;
+      nodes[count] = {tree, static_cast<uint8_t>(at.depth), at.path};
+      count += visit == 0 ? 1 : 0;
+      if (at.depth >= kMaxDepth && visit != 0) return fail("node set: a path deeper than any tree");
+      stack[pending] = {at.path | uint64_t{1} << (63 - at.depth), at.depth + 1};
+      pending += visit & 1;
+      stack[pending] = {at.path, at.depth + 1};
+      pending += visit >> 1;
+    }
+    in.skip(2 * visits);
+    if (in.overrun()) return fail("node set: the bitstring ends early");
+    if (count > maxNodes)
+      return fail(ErrorCode::tooLarge,
+                  "node set: more than " + std::to_string(maxNodes) + " nodes; ask for fewer");
+  }
+  return {};
+}
+
 }  // namespace
 
 Result<void> writeTreeBitstring(BitWriter& out, std::span<const NodeId> nodes) {
@@ -64,32 +104,18 @@ Result<std::vector<uint8_t>> encodeTreeBitstring(std::span<const NodeId> nodes) 
 
 Result<std::vector<NodeId>> readTreeBitstring(BitReader& in, size_t maxNodes) {
   std::vector<NodeId> nodes;
-  std::vector<NodeId> stack;
+  size_t count = 0;
   const uint64_t trees = readExpGolomb(in, kTreeCountOrder);
   uint64_t next = 0;
   for (uint64_t t = 0; t < trees; ++t) {
     const uint64_t tree = next + readExpGolomb(in, kTreeGapOrder);
     if (tree > UINT32_MAX) return fail("node set: a tree number beyond 32 bits");
     next = tree + 1;
-    stack.push_back(NodeId::root(static_cast<uint32_t>(tree)));
-    while (!stack.empty()) {
-      const NodeId node = stack.back();
-      stack.pop_back();
-      const uint64_t visit = in.read(2);
-      if (in.overrun()) return fail("node set: the bitstring ends early");
-      if (visit == 0) {
-        if (nodes.size() >= maxNodes)
-          return fail(ErrorCode::tooLarge,
-                      "node set: more than " + std::to_string(maxNodes) + " nodes; ask for fewer");
-        nodes.push_back(node);
-        continue;
-      }
-      if (node.depth >= kMaxDepth) return fail("node set: a path deeper than any tree");
-      if ((visit & 1) != 0) stack.push_back(node.child(true));
-      if ((visit & 2) != 0) stack.push_back(node.child(false));
-    }
+    if (auto read = readTree(in, static_cast<uint32_t>(tree), maxNodes, nodes, count); !read)
+      return tl::unexpected(read.error());
   }
   if (in.overrun()) return fail("node set: the bitstring ends early");
+  nodes.resize(count);
   return nodes;
 }
 

@@ -25,15 +25,21 @@ class PackStore::Collector {
   // The table's and the chunks' cache misses overlap within a block of nodes.
   Result<void> exactly(std::span<const NodeId> wanted) {
     constexpr size_t kBlock = 16;
+    constexpr size_t kUsualBytes = 4;  // a record's
+    out_.reserve(wanted.size() * kUsualBytes);
     std::array<RecordPlace, kBlock> places;
     for (size_t begin = 0; begin < wanted.size(); begin += kBlock) {
       const auto block = wanted.subspan(begin, std::min(kBlock, wanted.size() - begin));
       for (const NodeId& node : block) store_.table_.prefetch(node);
       for (size_t i = 0; i < block.size(); ++i) {
-        const auto place = placeOf(block[i]);
-        if (!place) return tl::unexpected(place.error());
-        places[i] = *place;
-        __builtin_prefetch(store_.chunks_[place->chunk].bytes.data() + place->bitOffset / 8);
+        if (const RecordPlace* known = store_.table_.find(block[i])) {
+          places[i] = *known;
+        } else {
+          const auto found = placeOf(block[i]);
+          if (!found) return tl::unexpected(found.error());
+          places[i] = *found;
+        }
+        __builtin_prefetch(store_.chunks_[places[i].chunk].bytes.data() + places[i].bitOffset / 8);
       }
       for (size_t i = 0; i < block.size(); ++i)
         if (auto written = write(places[i]); !written) return written;
