@@ -5,6 +5,7 @@ stand there exactly as written here. Everything a program writes goes into the f
 Runs as root, where the programs take their own users, or as anyone else.
 """
 import os
+import random
 import shlex
 import signal
 import socket
@@ -18,9 +19,15 @@ START_SECONDS = 30
 
 
 def free_port():
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        return probe.getsockname()[1]
+    """Outside the range that connections get theirs from, for it is bound only some time later."""
+    while True:
+        port = random.randrange(12000, 32000)
+        with socket.socket() as probe:
+            try:
+                probe.bind(("127.0.0.1", port))
+                return port
+            except OSError:
+                pass
 
 
 def shipped(path, replacements):
