@@ -48,6 +48,7 @@ class Description(unittest.TestCase):
     def setUpClass(cls):
         cls.document = openapi_file.load()
         cls.folder = tempfile.mkdtemp(prefix="meshfront-")
+        cls.addClassCleanup(shutil.rmtree, cls.folder)
         packs, damaged = (os.path.join(cls.folder, name) for name in ("packs", "damaged"))
         os.mkdir(packs)
         os.mkdir(damaged)
@@ -71,7 +72,6 @@ class Description(unittest.TestCase):
     @classmethod
     def tearDownClass(cls):
         statuses = [program.stop() for program in (cls.proxy, cls.service, cls.damaged)]
-        shutil.rmtree(cls.folder)
         if statuses != [0, 0, 0]:
             raise AssertionError(f"the programs ended with {statuses}")
 
