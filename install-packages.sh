@@ -33,6 +33,10 @@ test=(
   libgtest-dev libbenchmark-dev
   clang clang-format clang-tidy libclang-rt-14-dev
   xvfb xauth
+  nginx-light varnish squid haproxy    # the caches that deploy/ has configurations for
+  openssl                              # certificates for their tests
+  systemd                              # systemd-analyze: the units of deploy/
+  python3-yaml python3-jsonschema      # the description of the interface
 )
 # What tests/bench compares with; whatever of these is missing is left out there.
 bench=(

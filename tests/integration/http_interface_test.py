@@ -6,15 +6,12 @@
 Starts meshfront-serve over PACK (default: a synthetic one), meshfront-proxy over that, and checks
 every rule of the interface against both, that both answer alike, that the second of two identical
 requests costs nothing upstream, and that the proxy survives a restart of the service.
-Standard library only; the encoding of node sets is written here a second time, on purpose.
+Standard library only.
 """
 import base64
-import http.client
 import json
 import os
-import re
 import shutil
-import signal
 import socket
 import subprocess
 import sys
@@ -23,96 +20,10 @@ import threading
 import time
 import unittest
 
+from node_sets import bitstring, ids
+from running_programs import BINARY, Program, ask, counters
+
 IMMUTABLE = "public, max-age=31536000, immutable, no-transform"
-BINARY = "application/octet-stream"
-
-
-# --- node sets: a node is (tree, path), path a string of 0 and 1 ------------------------------------
-
-def exp_golomb(value, order):
-    value += 1 << order
-    return "0" * (value.bit_length() - order - 1) + format(value, "b")
-
-
-def tree_visits(paths, prefix=""):
-    if prefix in paths:
-        return "00"
-    left = any(p.startswith(prefix + "0") for p in paths)
-    right = any(p.startswith(prefix + "1") for p in paths)
-    bits = ("1" if left else "0") + ("1" if right else "0")
-    if left:
-        bits += tree_visits({p for p in paths if p.startswith(prefix + "0")}, prefix + "0")
-    if right:
-        bits += tree_visits({p for p in paths if p.startswith(prefix + "1")}, prefix + "1")
-    return bits
-
-
-def bitstring(nodes):
-    trees = {}
-    for tree, path in nodes:
-        trees.setdefault(tree, set()).add(path)
-    bits = exp_golomb(len(trees), 3)
-    following = 0
-    for tree in sorted(trees):
-        bits += exp_golomb(tree - following, 0) + tree_visits(trees[tree])
-        following = tree + 1
-    bits += "0" * (-len(bits) % 8)
-    return bytes(int(bits[i:i + 8], 2) for i in range(0, len(bits), 8))
-
-
-def ids(nodes):
-    return base64.urlsafe_b64encode(bitstring(nodes)).rstrip(b"=").decode()
-
-
-# --- programs ---------------------------------------------------------------------------------------
-
-class Program:
-    def __init__(self, *command):
-        self.process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL,
-                                        text=True)
-        line = self.process.stdout.readline()
-        match = re.fullmatch(r"listening on http://127\.0\.0\.1:(\d+)\n", line)
-        if not match:
-            self.process.kill()
-            raise RuntimeError(f"{command[0]} said {line!r}")
-        self.port = int(match.group(1))
-
-    def stop(self):
-        self.process.send_signal(signal.SIGTERM)
-        status = self.process.wait(timeout=30)
-        self.process.stdout.close()
-        return status
-
-
-class Response:
-    def __init__(self, raw):
-        self.status = raw.status
-        self.headers = {name.lower(): value for name, value in raw.getheaders()}
-        self.body = raw.read()
-
-
-def ask(port, target, method="GET", body=None, headers=None):
-    connection = http.client.HTTPConnection("127.0.0.1", port, timeout=60)
-    try:
-        connection.putrequest(method, target, skip_accept_encoding=True)
-        if body is not None:
-            connection.putheader("Content-Length", str(len(body)))
-        for name, value in (headers or {}).items():
-            connection.putheader(name, value)
-        connection.endheaders(body)
-        return Response(connection.getresponse())
-    finally:
-        connection.close()
-
-
-def query(port, target, nodes, content_type=BINARY):
-    return ask(port, target, "QUERY", bitstring(nodes), {"Content-Type": content_type})
-
-
-def counters(port):
-    text = ask(port, "/metrics").body.decode()
-    return {name: int(value) for name, value in
-            re.findall(r"^([a-z_]+(?:\{[^}]*\})?) (\d+)$", text, re.MULTILINE)}
 
 
 class Interface(unittest.TestCase):
