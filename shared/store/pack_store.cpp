@@ -103,16 +103,25 @@ PackStore::~PackStore() {
   budget_->leave(this);
 }
 
+// Caches would keep damaged bytes for as long as right ones.
 Result<HeldBytes> PackStore::base(Waiting) {
+  if (const auto sound = directory(); !sound) return tl::unexpected(sound.error());
   return HeldBytes(pack_->base(), pack_);
 }
 Result<HeldBytes> PackStore::chunkIndex(Waiting) {
+  if (const auto sound = directory(); !sound) return tl::unexpected(sound.error());
   return HeldBytes(pack_->chunkIndex(), pack_);
 }
 
 Result<HeldBytes> PackStore::chunk(uint32_t number, Waiting) {
   const auto bytes = pack_->chunk(number);
   if (!bytes) return tl::unexpected(bytes.error());
+  std::atomic<bool>& sound = chunks_[number].sound;
+  if (!sound.load(std::memory_order_relaxed)) {
+    if (auto checked = checkedContent(*bytes, "pack: a chunk"); !checked)
+      return tl::unexpected(checked.error());
+    sound.store(true, std::memory_order_relaxed);
+  }
   return HeldBytes(*bytes, pack_);
 }
 

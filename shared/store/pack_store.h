@@ -50,6 +50,7 @@ class PackStore final : public RecordStore, private MemoryBudget::Member {
     std::span<const uint8_t> bytes;  // set at the first touch, for ever: it points into the map
     bool indexed = false;
     std::atomic<bool> used{false};
+    std::atomic<bool> sound{false};  // its checksum was right when it was served whole
   };
 
   [[nodiscard]] Result<const Directory*> directory();

@@ -126,6 +126,27 @@ TEST_F(PackStoreTest, ReportsDamage) {
   expectError(mesh_.nodesAtDepth(0), ErrorCode::invalid);
 }
 
+TEST_F(PackStoreTest, ServesNoDamagedResourceWhole) {
+  PackContent content = mesh_.content;
+  content.chunks.front()[content.chunks.front().size() / 2] ^= 1;
+  open(content);
+  EXPECT_TRUE(store_->base(Waiting::refused));
+  EXPECT_TRUE(store_->chunkIndex(Waiting::refused));
+  EXPECT_TRUE(store_->chunk(1, Waiting::refused));
+  for (int twice = 0; twice < 2; ++twice) {
+    const auto damaged = store_->chunk(0, Waiting::refused);
+    ASSERT_FALSE(damaged);
+    EXPECT_EQ(damaged.error().code, ErrorCode::invalid);
+  }
+  for (const auto resource : {&PackContent::base, &PackContent::chunkIndex}) {
+    content = mesh_.content;
+    (content.*resource)[(content.*resource).size() / 2] ^= 1;
+    open(content);
+    EXPECT_FALSE(store_->base(Waiting::refused));
+    EXPECT_FALSE(store_->chunkIndex(Waiting::refused));
+  }
+}
+
 TEST_F(PackStoreTest, AnswersManyThreadsAlike) {
   open(mesh_.content, 50000);  // too little for all: chunks come and go
   std::vector<std::vector<uint8_t>> expected;
