@@ -35,7 +35,12 @@ void MemoryBudget::enforce() {
   for (size_t round = 0; round < members_.size(); ++round) {
     const size_t used = bytesLocked();
     if (used <= limit_) return;
-    (*std::max_element(members_.begin(), members_.end(), smaller))->release(used - limit_ + spare);
+    Member& largest = **std::max_element(members_.begin(), members_.end(), smaller);
+    const size_t before = largest.heldBytes();
+    largest.release(used - limit_ + spare);
+    // Others may have added to it meanwhile.
+    const size_t after = largest.heldBytes();
+    if (after < before) releasedBytes_ += before - after;
   }
 }
 

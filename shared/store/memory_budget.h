@@ -5,7 +5,9 @@
 // while it holds a lock of its own.
 #pragma once
 
+#include <atomic>
 #include <cstddef>
+#include <cstdint>
 #include <mutex>
 #include <vector>
 
@@ -35,6 +37,8 @@ class MemoryBudget {
   void enforce();
   [[nodiscard]] size_t bytes() const;
   [[nodiscard]] size_t limit() const { return limit_; }
+  // Given up so far because of enforce().
+  [[nodiscard]] uint64_t releasedBytes() const { return releasedBytes_.load(); }
 
  private:
   [[nodiscard]] size_t bytesLocked() const;
@@ -42,6 +46,7 @@ class MemoryBudget {
   const size_t limit_;
   mutable std::mutex mutex_;
   std::vector<Member*> members_;
+  std::atomic<uint64_t> releasedBytes_{0};
 };
 
 }  // namespace meshfront

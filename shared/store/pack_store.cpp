@@ -62,6 +62,8 @@ class PackStore::Collector {
   }
 
   [[nodiscard]] Answer finish() {
+    store_.statistics_->hits.fetch_add(records_ - missed_, std::memory_order_relaxed);
+    if (missed_ > 0) store_.statistics_->misses.fetch_add(missed_, std::memory_order_relaxed);
     Answer answer{out_.take(), records_};
     appendChecksum(answer.bytes);
     return answer;
@@ -70,6 +72,7 @@ class PackStore::Collector {
  private:
   Result<RecordPlace> placeOf(const NodeId& node) {
     if (const RecordPlace* place = store_.table_.find(node)) return *place;
+    ++missed_;
     lock_.unlock();
     auto place = store_.locate(node, directory_);
     lock_.lock();
@@ -92,10 +95,15 @@ class PackStore::Collector {
   std::shared_lock<std::shared_mutex> lock_;
   BitWriter out_;
   uint64_t records_ = 0;
+  uint64_t missed_ = 0;
 };
 
-PackStore::PackStore(std::shared_ptr<const Pack> pack, std::shared_ptr<MemoryBudget> budget)
-    : pack_(std::move(pack)), budget_(std::move(budget)), chunks_(pack_->metadata().chunkCount) {
+PackStore::PackStore(std::shared_ptr<const Pack> pack, std::shared_ptr<MemoryBudget> budget,
+                     std::shared_ptr<IndexStatistics> statistics)
+    : pack_(std::move(pack)),
+      budget_(std::move(budget)),
+      statistics_(std::move(statistics)),
+      chunks_(pack_->metadata().chunkCount) {
   budget_->join(this);
 }
 
@@ -208,6 +216,7 @@ Result<RecordPlace> PackStore::indexChunkOf(const NodeId& node, unsigned level,
       if (!table_.addChunk(*number, chunk->entries)) return damaged();
       state.bytes = *bytes;
       state.indexed = true;
+      statistics_->chunksIndexed.fetch_add(1, std::memory_order_relaxed);
       state.used = true;
       indexBytes_ = table_.bytes();
     }
@@ -231,6 +240,7 @@ void PackStore::release(size_t bytes) {
     if (const auto chunk = decodeChunk(state.bytes, directory_->tables))
       table_.removeChunk(number, chunk->entries);
     state.indexed = false;
+    statistics_->chunksForgotten.fetch_add(1, std::memory_order_relaxed);
   }
   indexBytes_ = table_.bytes();
 }

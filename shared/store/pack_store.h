@@ -17,6 +17,7 @@
 
 #include "shared/codec/base_mesh.h"
 #include "shared/codec/chunk.h"
+#include "shared/store/index_statistics.h"
 #include "shared/store/memory_budget.h"
 #include "shared/store/pack.h"
 #include "shared/store/record_store.h"
@@ -27,7 +28,9 @@ namespace meshfront {
 class PackStore final : public RecordStore, private MemoryBudget::Member {
  public:
   // Reads nothing but what opening the pack has read.
-  PackStore(std::shared_ptr<const Pack> pack, std::shared_ptr<MemoryBudget> budget);
+  // `statistics`: to count in with others; none: nobody wants to know.
+  PackStore(std::shared_ptr<const Pack> pack, std::shared_ptr<MemoryBudget> budget,
+            std::shared_ptr<IndexStatistics> statistics = std::make_shared<IndexStatistics>());
   ~PackStore() override;
 
   [[nodiscard]] const MeshMetadata& metadata() const { return pack_->metadata(); }
@@ -65,6 +68,7 @@ class PackStore final : public RecordStore, private MemoryBudget::Member {
 
   const std::shared_ptr<const Pack> pack_;
   const std::shared_ptr<MemoryBudget> budget_;
+  const std::shared_ptr<IndexStatistics> statistics_;
   std::once_flag directoryRead_;
   Result<Directory> directory_ = Directory{};
 
