@@ -8,8 +8,11 @@
 #include <cstdint>
 #include <memory>
 
+#include "shared/http/access_log.h"
 #include "shared/http/listen_address.h"
 #include "shared/http/message.h"
+#include "shared/http/metrics.h"
+#include "shared/http/server_limits.h"
 #include "shared/result.h"
 
 namespace meshfront {
@@ -21,8 +24,10 @@ class HttpFront {
     unsigned threads = 1;         // that serve connections, >= 1
     unsigned waitingThreads = 0;  // that may wait for answers; 0: the handler never waits
     size_t maxWaitingRequests = 4096;
-    size_t maxContentBytes = size_t{1} << 20;  // of a request; more is marked as too large
-    unsigned idleSeconds = 75;                 // after which a silent connection is closed
+    ServerLimits limits{};           // those of lines, fields and contents, connections, time and
+                                     // memory; the rest is the handler's
+    Metrics* metrics = nullptr;      // gets what FrontMetrics counts; must outlive the front
+    AccessLog* accessLog = nullptr;  // likewise; none: no log
   };
   // Listens when it returns. `handler` must outlive the front.
   [[nodiscard]] static Result<std::unique_ptr<HttpFront>> start(HttpHandler& handler,
@@ -34,6 +39,8 @@ class HttpFront {
   HttpFront& operator=(const HttpFront&) = delete;
 
   [[nodiscard]] uint16_t port() const;
+  // As asked for, or as many as the system grants descriptors for.
+  [[nodiscard]] size_t maxConnections() const;
 
  private:
   struct Server;

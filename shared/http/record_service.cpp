@@ -8,7 +8,6 @@
 #include "shared/bits/base64url.h"
 #include "shared/http/conditional_request.h"
 #include "shared/http/problem.h"
-#include "shared/http/split_request.h"
 
 namespace meshfront {
 namespace {
@@ -162,13 +161,14 @@ HttpResponse RecordService::overloaded(const HttpRequest& request) {
 
 Result<HttpResponse> RecordService::respond(const HttpRequest& request, const Route& route,
                                             Waiting waiting) {
-  if (request.target.size() > kMaxTargetOctets)
-    return problem(414, "the URL is longer than 8000 octets; send the set by QUERY");
+  if (request.target.size() > options_.maxTarget)
+    return problem(414, "the URL is longer than " + std::to_string(options_.maxTarget) +
+                            " octets; send the set by QUERY");
   if (route.kind == RouteKind::unknown) return problem(404, "no such resource");
   if (request.method == "OPTIONS") return optionsResponse(route.kind);
   if (!isAllowed(request.method, route.kind)) return wrongMethod(route.kind);
   if (request.contentTooLarge)
-    return problem(413, "the content is longer than " + std::to_string(kMaxContentOctets) +
+    return problem(413, "the content is longer than " + std::to_string(options_.maxContent) +
                             " octets; ask for fewer nodes at a time");
   const bool takesQuery = route.kind == RouteKind::splits || route.kind == RouteKind::querySplits;
   if (route.hasQuery && !takesQuery) return problem(400, "this resource takes no query");
@@ -227,6 +227,9 @@ Result<HttpResponse> RecordService::splits(const HttpRequest& request, const Rou
               : parseSplitUrl(route.last, route.hasQuery, route.query, *maxLevel, maxWanted);
   if (!set)
     return problem(set.error().code == ErrorCode::tooLarge ? 413 : 400, set.error().message);
+  if (set->expansion.levels > options_.maxLevels)
+    return problem(413, "more than " + std::to_string(options_.maxLevels) +
+                            " levels; ask for fewer at a time");
 
   auto answer = store.collect(set->wanted, set->expansion, options_.limits, waiting);
   if (!answer) return tl::unexpected(answer.error());
@@ -238,7 +241,7 @@ Result<HttpResponse> RecordService::splits(const HttpRequest& request, const Rou
       immutableResponse(HeldBytes::of(std::move(answer->bytes)), std::move(etag), store.age());
   if (byQuery) {
     std::string target = splitTarget(route.mesh, route.revision, request.content, set->expansion);
-    if (target.size() <= kMaxTargetOctets) response.set("Content-Location", std::move(target));
+    if (target.size() <= options_.maxTarget) response.set("Content-Location", std::move(target));
   }
   return response;
 }

@@ -1,7 +1,7 @@
 // The HTTP interface over a catalogue of record stores: the same in the service and in the proxy.
 //
 // A request passes these steps; the first that objects answers:
-//   target no longer than 8,000 octets (414) -> a resource of the interface (404) -> OPTIONS ->
+//   target no longer than allowed (414) -> a resource of the interface (404) -> OPTIONS ->
 //   a method it allows (405) -> content within the limit (413) -> the query's spelling (400) ->
 //   the mesh, its revision, the nodes or chunk (404) -> the answer -> If-None-Match (304)
 #pragma once
@@ -13,14 +13,18 @@
 #include "shared/http/message.h"
 #include "shared/http/metrics.h"
 #include "shared/http/route.h"
+#include "shared/http/split_request.h"
 
 namespace meshfront {
 
 class RecordService final : public HttpHandler {
  public:
   struct Options {
-    CollectLimits limits;
-    std::string via;  // value of the Via field; empty at the origin
+    CollectLimits limits{};
+    size_t maxTarget = kMaxTargetOctets;
+    size_t maxContent = kMaxContentOctets;  // for the message; the server counts
+    size_t maxLevels = kMaxDepth;           // of descendants
+    std::string via{};                      // value of the Via field; empty at the origin
   };
   // Catalogue and metrics must outlive the service.
   RecordService(Catalogue& catalogue, Metrics& metrics, Options options);
