@@ -39,13 +39,20 @@ void appendEscaped(std::string& out, std::string_view text, const char* prefix) 
   }
 }
 
-std::string timeText(int64_t time, const char* format) {
+// Made once a second and thread, since many lines have the same.
+const std::string& timeText(int64_t time, const char* format) {
+  thread_local std::string text;
+  thread_local int64_t textTime = -1;
+  thread_local const char* textFormat = nullptr;
+  if (time == textTime && format == textFormat) return text;
   const auto seconds = static_cast<time_t>(time);
   tm parts{};
   gmtime_r(&seconds, &parts);
-  std::array<char, 64> text{};
-  const size_t length = std::strftime(text.data(), text.size(), format, &parts);
-  return {text.data(), length};
+  std::array<char, 64> buffer{};
+  text.assign(buffer.data(), std::strftime(buffer.data(), buffer.size(), format, &parts));
+  textTime = time;
+  textFormat = format;
+  return text;
 }
 
 std::string secondsText(double seconds) {
@@ -55,8 +62,10 @@ std::string secondsText(double seconds) {
 }
 
 std::string textLine(const AccessLog::Entry& entry, int64_t time) {
-  std::string line(entry.address);
-  line += timeText(time, " - - [%d/%b/%Y:%H:%M:%S +0000] \"");
+  static constexpr const char* kTime = " - - [%d/%b/%Y:%H:%M:%S +0000] \"";
+  std::string line;
+  line.reserve(entry.target.size() + 128);
+  line.append(entry.address).append(timeText(time, kTime));
   if (entry.method.empty()) {
     line += "-";
   } else {
@@ -71,8 +80,10 @@ std::string textLine(const AccessLog::Entry& entry, int64_t time) {
 }
 
 std::string jsonLine(const AccessLog::Entry& entry, int64_t time) {
-  std::string line = timeText(time, "{\"time\":\"%Y-%m-%dT%H:%M:%SZ\",\"address\":\"");
-  line.append(entry.address).append("\",\"method\":\"");
+  static constexpr const char* kTime = "{\"time\":\"%Y-%m-%dT%H:%M:%SZ\",\"address\":\"";
+  std::string line;
+  line.reserve(entry.target.size() + 256);
+  line.append(timeText(time, kTime)).append(entry.address).append("\",\"method\":\"");
   appendEscaped(line, entry.method, "\\u00");
   line += "\",\"target\":\"";
   appendEscaped(line, entry.target, "\\u00");
