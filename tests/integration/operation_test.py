@@ -181,7 +181,7 @@ class Operation(unittest.TestCase):
             service.signal(signal.SIGHUP)
             wait_until(lambda: self.offered(service) == new, "the new revision is offered")
             self.assertEqual(404, ask(service.port, f"/v1/meshes/mesh/{old}/base")[0])
-            self.assertEqual(1, metrics(service.port)["meshfront_requests_in_flight"] - 1)
+            self.assertGreaterEqual(metrics(service.port)["meshfront_requests_in_flight"], 2)
             received += all_from(connection)
         self.assertEqual(whole, received.split(b"\r\n\r\n", 1)[1])
 

@@ -14,11 +14,11 @@
 namespace meshfront {
 namespace {
 
-using Format = AccessLog::Format;
+using LogFormat = AccessLog::Format;
 
-constexpr int64_t kSomeTime = 1'795'342'500;  // 2026-11-22 10:15:00 UTC
+constexpr int64_t kLogTime = 1'795'342'500;  // 2026-11-22 10:15:00 UTC
 
-AccessLog::Entry someEntry() {
+AccessLog::Entry someLogEntry() {
   return {.address = "192.0.2.1",
           .method = "GET",
           .target = "/v1/meshes?x=1",
@@ -27,27 +27,27 @@ AccessLog::Entry someEntry() {
           .seconds = 0.0003214};
 }
 
-std::string fileText(const std::filesystem::path& path) {
+std::string logText(const std::filesystem::path& path) {
   std::ifstream in(path, std::ios::binary);
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
 TEST(AccessLog, WritesTheCommonFormat) {
-  EXPECT_EQ(AccessLog::line(someEntry(), Format::text, kSomeTime),
+  EXPECT_EQ(AccessLog::line(someLogEntry(), LogFormat::text, kLogTime),
             "192.0.2.1 - - [22/Nov/2026:10:15:00 +0000] \"GET /v1/meshes?x=1 HTTP/1.1\" 200 1234 "
             "0.000321\n");
-  AccessLog::Entry cut = someEntry();
+  AccessLog::Entry cut = someLogEntry();
   cut.version10 = true;
   cut.whole = false;
-  EXPECT_EQ(AccessLog::line(cut, Format::text, kSomeTime),
+  EXPECT_EQ(AccessLog::line(cut, LogFormat::text, kLogTime),
             "192.0.2.1 - - [22/Nov/2026:10:15:00 +0000] \"GET /v1/meshes?x=1 HTTP/1.0\" 200 1234 "
             "0.000321 cut\n");
-  EXPECT_EQ(AccessLog::line({.address = "::1", .status = 408, .seconds = 10}, Format::text, 0),
+  EXPECT_EQ(AccessLog::line({.address = "::1", .status = 408, .seconds = 10}, LogFormat::text, 0),
             "::1 - - [01/Jan/1970:00:00:00 +0000] \"-\" 408 0 10.000000\n");
 }
 
 TEST(AccessLog, WritesJson) {
-  EXPECT_EQ(AccessLog::line(someEntry(), Format::json, kSomeTime),
+  EXPECT_EQ(AccessLog::line(someLogEntry(), LogFormat::json, kLogTime),
             "{\"time\":\"2026-11-22T10:15:00Z\",\"address\":\"192.0.2.1\",\"method\":\"GET\","
             "\"target\":\"/v1/meshes?x=1\",\"status\":200,\"bytes\":1234,\"seconds\":0.000321,"
             "\"whole\":true}\n");
@@ -56,9 +56,9 @@ TEST(AccessLog, WritesJson) {
 TEST(AccessLog, EscapesWhateverAClientSends) {
   std::string all;
   for (int octet = 1; octet < 256; ++octet) all.push_back(static_cast<char>(octet));
-  AccessLog::Entry entry = someEntry();
+  AccessLog::Entry entry = someLogEntry();
   entry.target = all;
-  const std::string text = AccessLog::line(entry, Format::text, kSomeTime);
+  const std::string text = AccessLog::line(entry, LogFormat::text, kLogTime);
   EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 1);
   EXPECT_EQ(std::count(text.begin(), text.end(), '"'), 2);
   for (const char c : text.substr(0, text.size() - 1)) EXPECT_TRUE(c >= 0x20 && c < 0x7F);
@@ -67,7 +67,7 @@ TEST(AccessLog, EscapesWhateverAClientSends) {
   EXPECT_NE(text.find("\\x5C"), std::string::npos);
   EXPECT_NE(text.find("\\xFF"), std::string::npos);
 
-  const auto json = nlohmann::json::parse(AccessLog::line(entry, Format::json, kSomeTime));
+  const auto json = nlohmann::json::parse(AccessLog::line(entry, LogFormat::json, kLogTime));
   const std::string back = json["target"];  // UTF-8 of the same code points
   EXPECT_EQ(back.substr(0, 127), all.substr(0, 127));
   EXPECT_EQ(back.size(), 127U + 2 * 128);
@@ -78,12 +78,12 @@ TEST(AccessLog, WritesAllLinesOfAllThreads) {
   constexpr int kThreads = 4;
   constexpr int kLines = 500;
   {
-    auto log = AccessLog::open(folder / "log", Format::json);
+    auto log = AccessLog::open(folder / "log", LogFormat::json);
     ASSERT_TRUE(log) << log.error().message;
     std::vector<std::thread> threads;
     for (int i = 0; i < kThreads; ++i)
       threads.emplace_back([&log] {
-        for (int line = 0; line < kLines; ++line) (*log)->add(someEntry());
+        for (int line = 0; line < kLines; ++line) (*log)->add(someLogEntry());
       });
     for (std::thread& thread : threads) thread.join();
     EXPECT_EQ((*log)->dropped(), 0U);
@@ -98,26 +98,26 @@ TEST(AccessLog, WritesAllLinesOfAllThreads) {
 TEST(AccessLog, AppendsAndOpensAnew) {
   const TemporaryFolder folder;
   std::ofstream(folder / "log") << "before\n";
-  auto log = *AccessLog::open(folder / "log", Format::text);
+  auto log = *AccessLog::open(folder / "log", LogFormat::text);
   std::filesystem::rename(folder / "log", folder / "moved");
   ASSERT_TRUE(log->reopen());
-  log->add(someEntry());
+  log->add(someLogEntry());
   log.reset();
-  EXPECT_EQ(fileText(folder / "moved"), "before\n");
-  EXPECT_NE(fileText(folder / "log").find("GET /v1/meshes"), std::string::npos);
+  EXPECT_EQ(logText(folder / "moved"), "before\n");
+  EXPECT_NE(logText(folder / "log").find("GET /v1/meshes"), std::string::npos);
 }
 
 TEST(AccessLog, KeepsTheOldFileWhereItCannotBeOpenedAnew) {
   const TemporaryFolder folder;
   std::filesystem::create_directory(folder / "logs");
-  auto log = *AccessLog::open(folder / "logs/log", Format::text);
+  auto log = *AccessLog::open(folder / "logs/log", LogFormat::text);
   std::filesystem::rename(folder / "logs", folder / "moved");
   const auto opened = log->reopen();
   ASSERT_FALSE(opened);
   EXPECT_NE(opened.error().message.find("logs/log"), std::string::npos);
-  log->add(someEntry());
+  log->add(someLogEntry());
   log.reset();
-  EXPECT_NE(fileText(folder / "moved/log"), "");
+  EXPECT_NE(logText(folder / "moved/log"), "");
 }
 
 TEST(AccessLog, NeverWaitsForAReader) {
@@ -126,8 +126,8 @@ TEST(AccessLog, NeverWaitsForAReader) {
   ASSERT_EQ(::mkfifo(path.c_str(), 0600), 0);
   const int reader = ::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
   ASSERT_GE(reader, 0);
-  auto log = *AccessLog::open(path, Format::text);
-  AccessLog::Entry entry = someEntry();
+  auto log = *AccessLog::open(path, LogFormat::text);
+  AccessLog::Entry entry = someLogEntry();
   const std::string target(8000, 'a');
   entry.target = target;
   for (int i = 0; i < 1000; ++i) log->add(entry);  // 8 MB: neither the pipe nor the buffer hold it
@@ -138,7 +138,7 @@ TEST(AccessLog, NeverWaitsForAReader) {
 
 TEST(AccessLog, SaysWhyAFileCannotBeOpened) {
   const TemporaryFolder folder;
-  const auto log = AccessLog::open(folder / "no/such/folder", Format::text);
+  const auto log = AccessLog::open(folder / "no/such/folder", LogFormat::text);
   ASSERT_FALSE(log);
   EXPECT_NE(log.error().message.find("No such file"), std::string::npos);
 }

@@ -12,7 +12,7 @@
 namespace meshfront {
 namespace {
 
-constexpr std::chrono::hours kLong(1);
+constexpr std::chrono::hours kLongGrace(1);
 
 class PackCatalogueTest : public testing::Test {
  protected:
@@ -27,7 +27,7 @@ class PackCatalogueTest : public testing::Test {
     std::ofstream(folder_ / "new", std::ios::binary) << bytes;
     std::filesystem::rename(folder_ / "new", folder_ / file);
   }
-  void read(std::chrono::milliseconds grace = kLong, size_t maxRetired = 64) {
+  void read(std::chrono::milliseconds grace = kLongGrace, size_t maxRetired = 64) {
     auto catalogue =
         PackCatalogue::read(folder_.path(), std::make_shared<MemoryBudget>(size_t{1} << 24),
                             {.grace = grace, .maxRetired = maxRetired});
@@ -105,7 +105,7 @@ TEST_F(PackCatalogueTest, ForgetsOldRevisionsAfterTheGracePeriod) {
 
 TEST_F(PackCatalogueTest, KeepsNoMoreOldRevisionsThanAllowed) {
   std::vector<std::string> revisions{write("a.pack", "mesh", 1)};
-  read(kLong, 2);
+  read(kLongGrace, 2);
   for (uint32_t seed = 2; seed < 7; ++seed) {
     revisions.push_back(write("a.pack", "mesh", seed));
     catalogue_->rescan();

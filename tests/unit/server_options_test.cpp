@@ -7,13 +7,13 @@
 namespace meshfront {
 namespace {
 
-struct Parsed {
+struct ParsedOptions {
   std::optional<int> status;
   ServerOptions options;
 };
 
-Parsed parse(std::vector<const char*> arguments) {
-  Parsed parsed;
+ParsedOptions parseArguments(std::vector<const char*> arguments) {
+  ParsedOptions parsed;
   parsed.options.listen = "127.0.0.1:0";
   CLI::App app("A server.");
   addServerOptions(app, parsed.options);
@@ -24,7 +24,7 @@ Parsed parse(std::vector<const char*> arguments) {
 }
 
 TEST(ServerOptions, HaveDefaults) {
-  const Parsed parsed = parse({});
+  const ParsedOptions parsed = parseArguments({});
   EXPECT_FALSE(parsed.status);
   const ServerLimits defaults;
   EXPECT_EQ(parsed.options.limits.maxContent, defaults.maxContent);
@@ -35,34 +35,34 @@ TEST(ServerOptions, HaveDefaults) {
 }
 
 TEST(ServerOptions, SetEveryLimit) {
-  const Parsed parsed = parse({"--max-target",
-                               "9000",
-                               "--max-header",
-                               "16KiB",
-                               "--max-content",
-                               "2MiB",
-                               "--max-ids",
-                               "5",
-                               "--max-levels",
-                               "6",
-                               "--max-records",
-                               "7",
-                               "--max-answer",
-                               "8MiB",
-                               "--max-connections",
-                               "9",
-                               "--header-timeout",
-                               "0.5",
-                               "--content-timeout",
-                               "1.5",
-                               "--answer-timeout",
-                               "2.5",
-                               "--idle-timeout",
-                               "3.5",
-                               "--max-connections-per-address",
-                               "10",
-                               "--memory-in-flight",
-                               "11MiB"});
+  const ParsedOptions parsed = parseArguments({"--max-target",
+                                               "9000",
+                                               "--max-header",
+                                               "16KiB",
+                                               "--max-content",
+                                               "2MiB",
+                                               "--max-ids",
+                                               "5",
+                                               "--max-levels",
+                                               "6",
+                                               "--max-records",
+                                               "7",
+                                               "--max-answer",
+                                               "8MiB",
+                                               "--max-connections",
+                                               "9",
+                                               "--header-timeout",
+                                               "0.5",
+                                               "--content-timeout",
+                                               "1.5",
+                                               "--answer-timeout",
+                                               "2.5",
+                                               "--idle-timeout",
+                                               "3.5",
+                                               "--max-connections-per-address",
+                                               "10",
+                                               "--memory-in-flight",
+                                               "11MiB"});
   ASSERT_FALSE(parsed.status);
   const ServerLimits& limits = parsed.options.limits;
   EXPECT_EQ(limits.maxTarget, 9000U);
@@ -91,8 +91,8 @@ TEST(ServerOptions, SetEveryLimit) {
 }
 
 TEST(ServerOptions, TakeTheAccessLog) {
-  EXPECT_EQ(parse({"--access-log", "-"}).options.accessLog, "-");
-  EXPECT_EQ(parse({"--access-log-format", "json"}).options.accessLogFormat,
+  EXPECT_EQ(parseArguments({"--access-log", "-"}).options.accessLog, "-");
+  EXPECT_EQ(parseArguments({"--access-log-format", "json"}).options.accessLogFormat,
             AccessLog::Format::json);
 }
 
@@ -111,7 +111,7 @@ TEST(ServerOptions, RefuseWrongUsage) {
            {"--listen", "nowhere"},
            {"--unknown"}}) {
     testing::internal::CaptureStderr();
-    const Parsed parsed = parse(wrong);
+    const ParsedOptions parsed = parseArguments(wrong);
     EXPECT_NE(testing::internal::GetCapturedStderr(), "") << wrong[0];
     EXPECT_EQ(parsed.status, kUsageStatus) << wrong[0];
   }
@@ -119,7 +119,7 @@ TEST(ServerOptions, RefuseWrongUsage) {
 
 TEST(ServerOptions, HelpShowsTheTableWithUnitsAndDefaults) {
   testing::internal::CaptureStdout();
-  EXPECT_EQ(parse({"--help"}).status, 0);
+  EXPECT_EQ(parseArguments({"--help"}).status, 0);
   const std::string help = testing::internal::GetCapturedStdout();
   for (const char* part : {"Limits", "--max-content SIZE=1MiB", "--header-timeout SECONDS=10",
                            "--max-connections COUNT=16384", "--max-target OCTETS=8000"})
