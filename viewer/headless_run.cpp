@@ -6,16 +6,16 @@
 #include <iostream>
 #include <optional>
 
+#include "shared/receiver/http_fetcher.h"
+#include "shared/receiver/receiver.h"
 #include "viewer/export_mesh.h"
 #include "viewer/gl/gl_context.h"
 #include "viewer/interrupt.h"
 #include "viewer/mesh_picture.h"
 #include "viewer/picture/picture.h"
 #include "viewer/progress_line.h"
-#include "viewer/receiver/http_fetcher.h"
-#include "viewer/receiver/receiver.h"
-#include "viewer/receiver/trace.h"
 #include "viewer/reference_picture.h"
+#include "viewer/run/trace.h"
 #include "viewer/run_summary.h"
 
 namespace meshfront {

@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "viewer/receiver/receiver.h"
+#include "shared/receiver/receiver.h"
 
 namespace meshfront {
 

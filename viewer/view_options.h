@@ -6,11 +6,11 @@
 #include <optional>
 #include <string>
 
-#include "viewer/camera/camera.h"
-#include "viewer/camera/camera_spec.h"
-#include "viewer/receiver/mesh_url.h"
-#include "viewer/receiver/ranking.h"
-#include "viewer/receiver/stop_condition.h"
+#include "shared/camera/camera.h"
+#include "shared/camera/camera_spec.h"
+#include "shared/receiver/mesh_url.h"
+#include "shared/receiver/ranking.h"
+#include "viewer/run/stop_condition.h"
 
 namespace meshfront {
 

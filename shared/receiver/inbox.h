@@ -12,10 +12,10 @@
 #include <variant>
 #include <vector>
 
+#include "shared/receiver/record_request.h"
+#include "shared/receiver/transport.h"
 #include "shared/refinement/selectively_refined_mesh.h"
 #include "shared/store/mesh_metadata.h"
-#include "viewer/receiver/record_request.h"
-#include "viewer/receiver/transport.h"
 
 namespace meshfront {
 

@@ -1,4 +1,4 @@
-#include "viewer/camera/camera_spec.h"
+#include "shared/camera/camera_spec.h"
 
 #include <algorithm>
 #include <array>

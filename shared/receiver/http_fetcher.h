@@ -12,8 +12,8 @@
 #include <memory>
 #include <string>
 
-#include "viewer/receiver/retry_schedule.h"
-#include "viewer/receiver/transport.h"
+#include "shared/receiver/retry_schedule.h"
+#include "shared/receiver/transport.h"
 
 namespace meshfront {
 

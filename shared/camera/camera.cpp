@@ -1,4 +1,4 @@
-#include "viewer/camera/camera.h"
+#include "shared/camera/camera.h"
 
 #include <algorithm>
 #include <cmath>

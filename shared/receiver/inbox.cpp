@@ -1,4 +1,4 @@
-#include "viewer/receiver/inbox.h"
+#include "shared/receiver/inbox.h"
 
 #include <utility>
 

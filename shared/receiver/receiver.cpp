@@ -5,13 +5,13 @@
 //   advance     inbox -> the flight it belongs to -> applied in the order of the requests
 // Flights are applied in order although answers may overtake each other: the mesh after n answers,
 // and so every later request, is then the same for everybody who looks at the same view.
-#include "viewer/receiver/receiver.h"
+#include "shared/receiver/receiver.h"
 
 #include <algorithm>
 #include <utility>
 
-#include "viewer/receiver/inbox.h"
-#include "viewer/receiver/problem_details.h"
+#include "shared/receiver/inbox.h"
+#include "shared/receiver/problem_details.h"
 
 namespace meshfront {
 namespace {

@@ -2,7 +2,7 @@
 // and the order to stop. Everything else - slots, waiting jobs, curl - belongs to the loop's
 // thread. The destructor sets stop_, wakes the thread and joins it; jobs die with the loop,
 // uncalled.
-#include "viewer/receiver/http_fetcher.h"
+#include "shared/receiver/http_fetcher.h"
 
 #include <curl/curl.h>
 

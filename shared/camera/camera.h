@@ -8,7 +8,7 @@
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
-#include "viewer/camera/bounds.h"
+#include "shared/camera/bounds.h"
 
 namespace meshfront {
 

@@ -27,13 +27,13 @@
 #include <string>
 #include <vector>
 
+#include "shared/receiver/mesh_url.h"
+#include "shared/receiver/ranking.h"
+#include "shared/receiver/record_request.h"
+#include "shared/receiver/request_budget.h"
+#include "shared/receiver/transport.h"
 #include "shared/refinement/selectively_refined_mesh.h"
 #include "shared/store/mesh_metadata.h"
-#include "viewer/receiver/mesh_url.h"
-#include "viewer/receiver/ranking.h"
-#include "viewer/receiver/record_request.h"
-#include "viewer/receiver/request_budget.h"
-#include "viewer/receiver/transport.h"
 
 namespace meshfront {
 

@@ -1,4 +1,4 @@
-#include "viewer/receiver/trace.h"
+#include "viewer/run/trace.h"
 
 #include <iomanip>
 #include <utility>

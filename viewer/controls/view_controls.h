@@ -7,8 +7,8 @@
 #include <glm/vec2.hpp>
 #include <optional>
 
-#include "viewer/camera/bounds.h"
-#include "viewer/camera/camera.h"
+#include "shared/camera/bounds.h"
+#include "shared/camera/camera.h"
 
 namespace meshfront {
 

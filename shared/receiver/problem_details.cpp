@@ -1,4 +1,4 @@
-#include "viewer/receiver/problem_details.h"
+#include "shared/receiver/problem_details.h"
 
 #include <nlohmann/json.hpp>
 

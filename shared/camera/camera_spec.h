@@ -10,9 +10,9 @@
 #include <string>
 #include <string_view>
 
+#include "shared/camera/bounds.h"
+#include "shared/camera/camera.h"
 #include "shared/result.h"
-#include "viewer/camera/bounds.h"
-#include "viewer/camera/camera.h"
 
 namespace meshfront {
 

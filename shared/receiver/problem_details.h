@@ -4,7 +4,7 @@
 #include <span>
 #include <string>
 
-#include "viewer/receiver/transport.h"
+#include "shared/receiver/transport.h"
 
 namespace meshfront {
 

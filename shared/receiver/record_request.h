@@ -10,9 +10,9 @@
 #include "shared/codec/answer.h"
 #include "shared/codec/code_tables.h"
 #include "shared/hierarchy/node_id.h"
+#include "shared/receiver/mesh_url.h"
+#include "shared/receiver/transport.h"
 #include "shared/result.h"
-#include "viewer/receiver/mesh_url.h"
-#include "viewer/receiver/transport.h"
 
 namespace meshfront {
 

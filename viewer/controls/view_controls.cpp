@@ -1,4 +1,4 @@
-#include "viewer/camera/view_controls.h"
+#include "viewer/controls/view_controls.h"
 
 #include <algorithm>
 #include <cmath>
