@@ -10,7 +10,7 @@
 #include "shared/receiver/receiver.h"
 #include "viewer/export_mesh.h"
 #include "viewer/gl/gl_context.h"
-#include "viewer/interrupt.h"
+#include "shared/program/interrupt.h"
 #include "viewer/mesh_picture.h"
 #include "viewer/picture/picture.h"
 #include "viewer/progress_line.h"
@@ -25,6 +25,7 @@ using Kind = StopCondition::Kind;
 
 ReceiverOptions receiverOptions(const ViewOptions& options) {
   ReceiverOptions result;
+  result.mode = options.mode;
   result.order = options.order;
   result.batch = options.batch;
   result.window = options.window;

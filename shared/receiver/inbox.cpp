@@ -64,4 +64,24 @@ Transport::Completion recordsInto(std::shared_ptr<Inbox> inbox, uint64_t sequenc
   };
 }
 
+Transport::Completion chunkIndexInto(std::shared_ptr<Inbox> inbox) {
+  return [inbox = std::move(inbox)](FetchResponse response) {
+    ChunkIndexArrival arrival;
+    if (response.status == 200) arrival.index = decodeChunkIndex(response.body);
+    arrival.response = std::move(response);
+    inbox->put(std::move(arrival));
+  };
+}
+
+Transport::Completion chunkInto(std::shared_ptr<Inbox> inbox, uint64_t sequence,
+                                std::shared_ptr<const CodeTables> tables) {
+  return [inbox = std::move(inbox), sequence, tables = std::move(tables)](FetchResponse response) {
+    ChunkArrival arrival;
+    arrival.sequence = sequence;
+    if (response.status == 200) arrival.chunk = decodeChunk(response.body, *tables);
+    arrival.response = std::move(response);
+    inbox->put(std::move(arrival));
+  };
+}
+
 }  // namespace meshfront

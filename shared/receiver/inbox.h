@@ -12,6 +12,7 @@
 #include <variant>
 #include <vector>
 
+#include "shared/codec/chunk.h"
 #include "shared/receiver/record_request.h"
 #include "shared/receiver/transport.h"
 #include "shared/refinement/selectively_refined_mesh.h"
@@ -33,7 +34,17 @@ struct RecordsArrival {
   FetchResponse response;
   Result<std::vector<RecordEntry>> entries = fail("no records");  // offsets into response.body
 };
-using Arrival = std::variant<MetadataArrival, BaseArrival, RecordsArrival>;
+struct ChunkIndexArrival {
+  FetchResponse response;
+  Result<ChunkIndex> index = fail("no chunk index");
+};
+struct ChunkArrival {
+  uint64_t sequence = 0;  // of the flight
+  FetchResponse response;
+  Result<Chunk> chunk = fail("no chunk");  // offsets into response.body
+};
+using Arrival =
+    std::variant<MetadataArrival, BaseArrival, RecordsArrival, ChunkIndexArrival, ChunkArrival>;
 
 // Thread-safe. Completions share it and may outlive the receiver.
 class Inbox {
@@ -60,5 +71,8 @@ class Inbox {
 [[nodiscard]] Transport::Completion recordsInto(std::shared_ptr<Inbox> inbox, uint64_t sequence,
                                                 std::shared_ptr<const RecordRequest> request,
                                                 std::shared_ptr<const CodeTables> tables);
+[[nodiscard]] Transport::Completion chunkIndexInto(std::shared_ptr<Inbox> inbox);
+[[nodiscard]] Transport::Completion chunkInto(std::shared_ptr<Inbox> inbox, uint64_t sequence,
+                                              std::shared_ptr<const CodeTables> tables);
 
 }  // namespace meshfront

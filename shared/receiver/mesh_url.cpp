@@ -89,6 +89,14 @@ std::string MeshUrl::splitsQuery(std::string_view revision, std::string_view par
   return url;
 }
 
+std::string MeshUrl::chunkIndex(std::string_view revision) const {
+  return metadata() + "/" + std::string(revision) + "/chunks";
+}
+
+std::string MeshUrl::chunk(std::string_view revision, uint32_t number) const {
+  return chunkIndex(revision) + "/" + std::to_string(number);
+}
+
 Result<MeshUrl> parseMeshUrl(std::string_view url) {
   MeshUrl result;
   const size_t scheme = url.find("://");

@@ -1,6 +1,7 @@
 // Where a mesh is published: http://HOST:PORT/v1/meshes/NAME (https likewise).
 #pragma once
 
+#include <cstdint>
 #include <span>
 #include <string>
 #include <string_view>
@@ -22,6 +23,8 @@ struct MeshUrl {
   // Target of QUERY: no IDs in the URL.
   [[nodiscard]] std::string splitsQuery(std::string_view revision,
                                         std::string_view parameter) const;
+  [[nodiscard]] std::string chunkIndex(std::string_view revision) const;
+  [[nodiscard]] std::string chunk(std::string_view revision, uint32_t number) const;
 };
 
 // The message of an error says which part is wrong and what is expected.

@@ -37,6 +37,17 @@ class RequestBudget {
     bodyBytes_ += bodyBytes;
     records_ += records;
   }
+  [[nodiscard]] uint64_t recordsLeft(uint64_t recordsApplied) const {
+    if (!limits_.records) return UINT64_MAX;
+    return *limits_.records > recordsApplied ? *limits_.records - recordsApplied : 0;
+  }
+  // Of answers that come whole, such as chunks: whether one more fits, if none is longer than
+  // `bodyBytes`.
+  [[nodiscard]] bool answerAllowed(uint64_t bytesDown, uint64_t pendingAnswers,
+                                   uint64_t bodyBytes) const {
+    return !limits_.bytesDown ||
+           bytesDown + (pendingAnswers + 1) * (headerBytes_ + bodyBytes) <= *limits_.bytesDown;
+  }
   [[nodiscard]] bool limited() const { return limits_.records || limits_.bytesDown; }
 
   // `pendingRecords` in `pendingAnswers` are under way and not yet in the other two figures.

@@ -1,4 +1,4 @@
-#include "viewer/interrupt.h"
+#include "shared/program/interrupt.h"
 
 #include <csignal>
 
