@@ -78,7 +78,7 @@ tests() {
 }
 
 sources() {
-  find encoder proxy service shared tests viewer \( -name '*.cpp' -o -name '*.h' \) -print0 | sort -z
+  find encoder load proxy service shared tests viewer \( -name '*.cpp' -o -name '*.h' \) -print0 | sort -z
 }
 formatted() {
   sources | xargs -0 clang-format --dry-run -Werror

@@ -6,16 +6,16 @@
 #include <iostream>
 #include <optional>
 
+#include "shared/receiver/http_fetcher.h"
+#include "shared/receiver/receiver.h"
 #include "viewer/export_mesh.h"
 #include "viewer/gl/gl_context.h"
-#include "viewer/interrupt.h"
+#include "shared/program/interrupt.h"
 #include "viewer/mesh_picture.h"
 #include "viewer/picture/picture.h"
 #include "viewer/progress_line.h"
-#include "viewer/receiver/http_fetcher.h"
-#include "viewer/receiver/receiver.h"
-#include "viewer/receiver/trace.h"
 #include "viewer/reference_picture.h"
+#include "viewer/run/trace.h"
 #include "viewer/run_summary.h"
 
 namespace meshfront {
@@ -25,6 +25,7 @@ using Kind = StopCondition::Kind;
 
 ReceiverOptions receiverOptions(const ViewOptions& options) {
   ReceiverOptions result;
+  result.mode = options.mode;
   result.order = options.order;
   result.batch = options.batch;
   result.window = options.window;

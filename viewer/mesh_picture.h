@@ -8,10 +8,10 @@
 #include <string>
 #include <vector>
 
+#include "shared/camera/bounds.h"
+#include "shared/camera/camera.h"
 #include "shared/refinement/selectively_refined_mesh.h"
 #include "shared/result.h"
-#include "viewer/camera/bounds.h"
-#include "viewer/camera/camera.h"
 #include "viewer/gl/gpu_mesh.h"
 #include "viewer/gl/mesh_renderer.h"
 #include "viewer/gl/pixel_counter.h"

@@ -25,6 +25,7 @@ RunSummary summaryOf(const Receiver& receiver, const std::string& url, double se
   summary.url = url;
   summary.state = stateName(receiver.state());
   summary.reason = receiver.reason();
+  summary.mode = receiver.mode();
   summary.statistics = receiver.statistics();
   summary.seconds = seconds;
   if (const MeshMetadata* metadata = receiver.metadata()) {
@@ -51,7 +52,9 @@ std::string toText(const RunSummary& summary) {
   if (is.recordsWhenSettled && *is.recordsWhenSettled != is.records)
     text << "; " << *is.recordsWhenSettled << " when the view had settled";
   text << "\ntriangles  " << summary.triangles;
-  text << "\nrequests   " << is.requests << " for records, " << is.traffic.attempts << " in all";
+  text << "\nrequests   " << is.requests
+       << (summary.mode == FetchMode::chunks ? " for chunks, " : " for records, ")
+       << is.traffic.attempts << " in all";
   text << "\nbytes up   " << is.traffic.bytesUp;
   if (is.idsRequested > 0)
     text << " (sets of IDs: " << 8 * share(is.setOctets, is.idsRequested) << " bits an ID)";
@@ -80,6 +83,7 @@ std::string toJson(const RunSummary& summary) {
       {"url", summary.url},
       {"revision", summary.revision},
       {"state", summary.state},
+      {"fetch", fetchModeName(summary.mode)},
       {"records", is.records},
       {"records_of_mesh", summary.splits},
       {"share", share(is.records, summary.splits)},

@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "viewer/receiver/receiver.h"
+#include "shared/receiver/receiver.h"
 
 namespace meshfront {
 
@@ -25,6 +25,7 @@ struct RunSummary {
   std::string reason;      // of degraded
   uint64_t splits = 0;     // records of the whole mesh
   uint64_t triangles = 0;  // drawn
+  FetchMode mode = FetchMode::exact;
   ReceiverStatistics statistics;
   double seconds = 0;
   std::optional<double> psnr;        // dB; identical pictures: kIdenticalPsnr

@@ -71,6 +71,12 @@ ParsedOptions parseViewOptions(int argc, char** argv) {
       ->check(parsedBy(parseCameraSpec, options.camera, ""));
   const std::map<std::string, RankOrder> orders{{"significance", RankOrder::significance},
                                                 {"pixels", RankOrder::pixels}};
+  const std::map<std::string, FetchMode> modes{{"exact", FetchMode::exact},
+                                               {"chunks", FetchMode::chunks}};
+  app.add_option("--fetch", options.mode,
+                 "exact (the records that the view wants; default) or chunks (constant pieces that "
+                 "any HTTP cache answers)")
+      ->transform(CLI::CheckedTransformer(modes).description(""));
   app.add_option("--rank", options.order,
                  "what to ask for first: significance (level, then pixels; default) or pixels")
       ->transform(CLI::CheckedTransformer(orders).description(""));
@@ -79,11 +85,12 @@ ParsedOptions parseViewOptions(int argc, char** argv) {
                                "complete, or after bytes down (20000, 20kB, 64KiB), records:N, "
                                "psnr:DB")
                     ->check(parsedBy(parseStopCondition, options.until, ""));
-  app.add_option("--batch", options.batch, "records a request; 0: 200 to 2000 by mesh size")
+  app.add_option("--batch", options.batch, "exact: records a request; 0: 200 to 2000 by mesh size")
       ->check(CLI::Range(0U, 100'000U).description(""))
       ->capture_default_str();
-  app.add_option("--window", options.window, "requests under way at a time, 1 to 16")
-      ->check(CLI::Range(1U, 16U).description(""))
+  app.add_option("--window", options.window,
+                 "requests under way at a time, 1 to 16; 0: 2 for exact sets, 4 for chunks")
+      ->check(CLI::Range(0U, 16U).description(""))
       ->capture_default_str();
   app.add_option("--screenshot", options.screenshot, "write the final picture as PNG");
   app.add_option("--export", options.exportPly, "write the final mesh as PLY");

@@ -6,11 +6,11 @@
 #include <optional>
 #include <string>
 
-#include "viewer/camera/camera.h"
-#include "viewer/camera/camera_spec.h"
-#include "viewer/receiver/mesh_url.h"
-#include "viewer/receiver/ranking.h"
-#include "viewer/receiver/stop_condition.h"
+#include "shared/camera/camera.h"
+#include "shared/camera/camera_spec.h"
+#include "shared/receiver/mesh_url.h"
+#include "shared/receiver/receiver_options.h"
+#include "viewer/run/stop_condition.h"
 
 namespace meshfront {
 
@@ -20,11 +20,12 @@ struct ViewOptions {
   bool headless = false;
   PixelSize size{1280, 720};
   CameraSpec camera;
+  FetchMode mode = FetchMode::exact;
   RankOrder order = RankOrder::significance;
   StopCondition until;
   bool untilGiven = false;
-  uint32_t batch = 0;  // records; 0 = adaptive
-  uint32_t window = 2;
+  uint32_t batch = 0;   // records; 0 = adaptive
+  uint32_t window = 0;  // requests; 0 = windowOf()
   std::optional<std::filesystem::path> screenshot;
   std::optional<std::filesystem::path> exportPly;
   std::optional<std::filesystem::path> trace;

@@ -13,12 +13,12 @@
 #include <string>
 #include <vector>
 
+#include "shared/receiver/http_fetcher.h"
+#include "shared/receiver/receiver.h"
 #include "viewer/export_mesh.h"
-#include "viewer/interrupt.h"
+#include "shared/program/interrupt.h"
 #include "viewer/mesh_picture.h"
-#include "viewer/receiver/http_fetcher.h"
-#include "viewer/receiver/receiver.h"
-#include "viewer/receiver/trace.h"
+#include "viewer/run/trace.h"
 #include "viewer/run_summary.h"
 #include "viewer/window/viewer_window.h"
 
@@ -84,6 +84,7 @@ class WindowRun {
  private:
   static ReceiverOptions receiverOptions(const ViewOptions& options) {
     ReceiverOptions result;
+    result.mode = options.mode;
     result.order = options.order;
     result.batch = options.batch;
     result.window = options.window;

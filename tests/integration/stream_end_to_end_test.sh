@@ -54,6 +54,22 @@ view "$through_proxy" --until records:400 --export "$work/coarse.ply" >"$work/co
 [ "$(number records "$work/coarse.json")" = 400 ] || fail "records:400 gives another number"
 expect_status 1 "$bin/meshfront-pack" compare "$mesh" "$work/coarse.ply"
 
+# By whole chunks: a view settles, another viewer sees the same and asks for the same; everything is
+# exactly the input, and no chunk is asked for twice.
+for n in 1 2; do
+  view "$through_proxy" --fetch chunks --camera zoom=2 --screenshot "$work/chunks$n.png" \
+    >"$work/chunks$n.json"
+  grep -q '"state":"settled"' "$work/chunks$n.json" || fail "the view does not settle by chunks"
+done
+cmp "$work/chunks1.png" "$work/chunks2.png" || fail "two viewers by chunks see different pictures"
+[ "$(number bytes_down "$work/chunks1.json")" = "$(number bytes_down "$work/chunks2.json")" ] ||
+  fail "two viewers by chunks get different bytes"
+view "$service_origin/v1/meshes/mesh" --fetch chunks --until complete \
+  --export "$work/chunks.ply" >"$work/chunks.json"
+expect_status 0 "$bin/meshfront-pack" compare "$mesh" "$work/chunks.ply"
+[ "$(number requests "$work/chunks.json")" = "$(curl -fsS "$through_proxy" |
+  sed -n 's/.*"chunkCount": *\([0-9]*\).*/\1/p')" ] || fail "not one request for each chunk"
+
 # Other ends of a run.
 view "$through_proxy" --until 6kB >"$work/bytes.json"
 down=$(number bytes_down "$work/bytes.json")

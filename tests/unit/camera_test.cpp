@@ -1,4 +1,4 @@
-#include "viewer/camera/camera.h"
+#include "shared/camera/camera.h"
 
 #include <gtest/gtest.h>
 
@@ -7,8 +7,8 @@
 #include <glm/geometric.hpp>
 #include <glm/trigonometric.hpp>
 
-#include "viewer/camera/camera_spec.h"
-#include "viewer/camera/view_controls.h"
+#include "shared/camera/camera_spec.h"
+#include "viewer/controls/view_controls.h"
 
 namespace meshfront {
 namespace {

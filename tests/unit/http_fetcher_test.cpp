@@ -1,4 +1,4 @@
-#include "viewer/receiver/http_fetcher.h"
+#include "shared/receiver/http_fetcher.h"
 
 #include <gtest/gtest.h>
 

@@ -59,13 +59,19 @@ FetchResponse MeshService::answer(const FetchRequest& request) const {
     metadata.splitCount = splitCount();
     metadata.maxLevel = 20;
     metadata.baseBytes = mesh_.coded.base.size();
-    metadata.boundsMax = {1, 1, 1};
+    metadata.chunkCount = static_cast<uint32_t>(mesh_.coded.chunks.size());
+    for (const auto& chunk : mesh_.coded.chunks) metadata.chunkBytes += chunk.size();
+    metadata.boundsMax = {16'000, 16'000, 16'000};
     const std::string json = toJson(metadata);
     response.body.assign(json.begin(), json.end());
   } else if (!path.starts_with("/" + knownRevision + "/")) {
     response.status = 404;
   } else if (path.ends_with("/base")) {
     response.body = mesh_.coded.base;
+  } else if (path.ends_with("/chunks")) {
+    response.body = mesh_.coded.chunkIndex;
+  } else if (const size_t at = path.find("/chunks/"); at != std::string::npos) {
+    response.body = mesh_.coded.chunks.at(std::stoul(path.substr(at + 8)));
   } else {
     response = records(request);
   }

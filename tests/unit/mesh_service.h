@@ -11,8 +11,8 @@
 #include "encoder/coding/mesh_coder.h"
 #include "shared/codec/answer.h"
 #include "shared/hierarchy/node_id.h"
+#include "shared/receiver/transport.h"
 #include "shared/store/mesh_metadata.h"
-#include "viewer/receiver/transport.h"
 
 namespace meshfront {
 

@@ -1,4 +1,4 @@
-#include "viewer/receiver/mesh_url.h"
+#include "shared/receiver/mesh_url.h"
 
 #include <gtest/gtest.h>
 

@@ -8,8 +8,8 @@
 #include <optional>
 #include <random>
 
+#include "shared/camera/camera_spec.h"
 #include "tests/unit/generated_shapes.h"
-#include "viewer/camera/camera_spec.h"
 #include "viewer/gl/gl_context.h"
 #include "viewer/gl/mesh_renderer.h"
 #include "viewer/gl/pixel_counter.h"

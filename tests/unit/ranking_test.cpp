@@ -1,4 +1,4 @@
-#include "viewer/receiver/ranking.h"
+#include "shared/receiver/ranking.h"
 
 #include <gtest/gtest.h>
 

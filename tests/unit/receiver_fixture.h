@@ -8,8 +8,8 @@
 #include <optional>
 #include <vector>
 
+#include "shared/receiver/receiver.h"
 #include "tests/unit/mesh_service.h"
-#include "viewer/receiver/receiver.h"
 
 namespace meshfront {
 

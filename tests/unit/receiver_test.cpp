@@ -1,5 +1,5 @@
 // What a receiver asks for, in which order, and what it becomes.
-#include "viewer/receiver/receiver.h"
+#include "shared/receiver/receiver.h"
 
 #include <set>
 

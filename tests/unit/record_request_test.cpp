@@ -1,4 +1,4 @@
-#include "viewer/receiver/record_request.h"
+#include "shared/receiver/record_request.h"
 
 #include <gtest/gtest.h>
 

@@ -1,8 +1,8 @@
-#include "viewer/receiver/request_budget.h"
+#include "shared/receiver/request_budget.h"
 
 #include <gtest/gtest.h>
 
-#include "viewer/receiver/retry_schedule.h"
+#include "shared/receiver/retry_schedule.h"
 
 namespace meshfront {
 namespace {

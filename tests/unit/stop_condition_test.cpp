@@ -1,4 +1,4 @@
-#include "viewer/receiver/stop_condition.h"
+#include "viewer/run/stop_condition.h"
 
 #include <gtest/gtest.h>
 

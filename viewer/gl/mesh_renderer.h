@@ -12,9 +12,9 @@
 #include <array>
 #include <optional>
 
+#include "shared/camera/bounds.h"
+#include "shared/camera/camera.h"
 #include "shared/result.h"
-#include "viewer/camera/bounds.h"
-#include "viewer/camera/camera.h"
 #include "viewer/gl/gl_object.h"
 #include "viewer/gl/gpu_mesh.h"
 #include "viewer/gl/render_target.h"

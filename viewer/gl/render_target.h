@@ -6,8 +6,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "shared/camera/camera.h"
 #include "shared/result.h"
-#include "viewer/camera/camera.h"
 #include "viewer/gl/gl_object.h"
 #include "viewer/picture/picture.h"
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "viewer/camera/view_controls.h"
+#include "viewer/controls/view_controls.h"
 
 struct GLFWwindow;
 

@@ -9,7 +9,7 @@
 #include <optional>
 #include <utility>
 
-#include "viewer/camera/view_controls.h"
+#include "viewer/controls/view_controls.h"
 #include "viewer/window/status_panel.h"
 
 namespace meshfront {

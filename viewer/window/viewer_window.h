@@ -16,10 +16,10 @@
 #include <string>
 #include <vector>
 
+#include "shared/camera/bounds.h"
+#include "shared/camera/camera.h"
+#include "shared/camera/camera_spec.h"
 #include "shared/result.h"
-#include "viewer/camera/bounds.h"
-#include "viewer/camera/camera.h"
-#include "viewer/camera/camera_spec.h"
 #include "viewer/gl/gl_context.h"
 #include "viewer/gl/gpu_mesh.h"
 #include "viewer/gl/mesh_renderer.h"

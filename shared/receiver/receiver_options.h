@@ -1,0 +1,55 @@
+// What a receiver may be told, and what it tells of its work.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+
+#include "shared/receiver/ranking.h"
+#include "shared/receiver/request_budget.h"
+#include "shared/receiver/transport.h"
+
+namespace meshfront {
+
+// What the requests for records name.
+enum class FetchMode {
+  exact,   // the nodes that the view wants and nothing else: fewest bytes down
+  chunks,  // constant pieces of about 512 records: equal URLs for everybody, so that any HTTP cache
+           // answers them; what a piece holds beyond the wish is kept and never asked for again
+};
+[[nodiscard]] const char* fetchModeName(FetchMode mode);  // "exact", "chunks"
+
+struct ReceiverOptions {
+  enum class Goal {
+    settled,  // what the views show
+    complete  // when that is there: the rest
+  };
+  FetchMode mode = FetchMode::exact;
+  RankOrder order = RankOrder::significance;
+  Goal goal = Goal::settled;
+  uint32_t batch = 0;   // exact: records a request; 0: adaptiveBatch()
+  uint32_t window = 0;  // requests under way; 0: 2 for exact sets, 4 for chunks
+  // After each answer advance() waits for a ranking before it applies the next one: the requests
+  // then depend on the mesh and the views alone, at the price of a count for each answer. Else
+  // rankings are used up, and the caller ranks when it likes.
+  bool freshRanking = true;
+  ReceiverLimits limits;
+  // Called on a thread of the transport when advance() has something to do. Must only wake.
+  std::function<void()> onArrival;
+};
+[[nodiscard]] uint32_t windowOf(const ReceiverOptions& options);  // requests under way, >= 1
+
+struct ReceiverStatistics {
+  uint64_t requests = 0;  // for records, repeated ones too
+  uint64_t answers = 0;   // applied whole; of chunks: taken in
+  uint64_t records = 0;   // applied
+  uint64_t malformed = 0;
+  uint64_t idsRequested = 0;                   // nodes named in requests
+  uint64_t setOctets = 0;                      // of their bitstrings, before base64url
+  uint64_t requestBytesUp = 0;                 // of record requests alone: lines, headers, content
+  uint64_t answerBytesDown = 0;                // of record answers alone, without headers
+  Traffic traffic;                             // everything
+  std::optional<uint64_t> recordsWhenSettled;  // the first time
+};
+
+}  // namespace meshfront
