@@ -40,7 +40,7 @@ ParsedLoadOptions parseLoadOptions(int argc, char** argv) {
   app.footer(
       "Each receiver is the viewer's own, with pixels estimated from projected triangles instead "
       "of\n"
-      "drawn ones. Its mesh takes memory (about 10 MB for 36 thousand vertices), which "
+      "drawn ones. Its mesh takes memory (about 2 to 4 MB for 36 thousand vertices), which "
       "--concurrency\n"
       "bounds.\n"
       "Exit codes: 0 every receiver that ended has settled, 1 one has failed, 2 wrong usage.");

@@ -2,14 +2,12 @@
 // while requests are answered.
 //
 // What happens to a file, and what rescan() makes of it:
-//   new          its mesh is offered
-//   replaced     (another inode, size or time) the mesh's new revision is offered; the old one
-//   stays
-//                answerable under its own URLs for the grace period, so that receivers in the midst
-//                of it can finish
-//   removed      the mesh leaves the catalogue; its revision stays answerable likewise
-//   broken       said once in the log and counted until it is mended; what was in service stays so
-//   second of a name    left out while the first one, by file name, is there
+//   new        its mesh is offered
+//   replaced   (another inode, size or time) the mesh's new revision is offered; the old one stays
+//              answerable under its own URLs for the grace period, for receivers in the midst of it
+//   removed    the mesh leaves the catalogue; its revision stays answerable likewise
+//   broken     said once in the log, counted until mended; what was in service stays so
+//   second     of a name: left out while the first one, by file name, is there
 // Whoever changes a pack writes a new file and renames it into place, as the encoder does: a file
 // that is cut short while it is mapped cannot be read safely by anybody.
 //

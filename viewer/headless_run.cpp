@@ -6,11 +6,11 @@
 #include <iostream>
 #include <optional>
 
+#include "shared/program/interrupt.h"
 #include "shared/receiver/http_fetcher.h"
 #include "shared/receiver/receiver.h"
 #include "viewer/export_mesh.h"
 #include "viewer/gl/gl_context.h"
-#include "shared/program/interrupt.h"
 #include "viewer/mesh_picture.h"
 #include "viewer/picture/picture.h"
 #include "viewer/progress_line.h"

@@ -1,6 +1,6 @@
 // meshfront-view: streams a mesh from a service and draws it, in a window or without one.
-#include "viewer/headless_run.h"
 #include "shared/program/interrupt.h"
+#include "viewer/headless_run.h"
 #include "viewer/view_options.h"
 #include "viewer/window_run.h"
 

@@ -13,10 +13,10 @@
 #include <string>
 #include <vector>
 
+#include "shared/program/interrupt.h"
 #include "shared/receiver/http_fetcher.h"
 #include "shared/receiver/receiver.h"
 #include "viewer/export_mesh.h"
-#include "shared/program/interrupt.h"
 #include "viewer/mesh_picture.h"
 #include "viewer/run/trace.h"
 #include "viewer/run_summary.h"
