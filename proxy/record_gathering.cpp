@@ -160,9 +160,11 @@ Result<SharedRecords> RecordGathering::fetch(const Batch& batch, const Needs& ne
 }
 
 void RecordGathering::settle(Batch& batch, const Result<SharedRecords>& records) {
+  // Descendants first: who finds a record meanwhile finds all that came with it below, and does not
+  // ask for that once more.
   if (records)
-    for (const RecordEntry& entry : (*records)->entries)
-      context_.cache.insert(entry, (*records)->bytes);
+    for (auto entry = (*records)->entries.rbegin(); entry != (*records)->entries.rend(); ++entry)
+      context_.cache.insert(*entry, (*records)->bytes);
   {
     const std::scoped_lock lock(context_.underWay.mutex);
     for (const NodeId& node : batch.nodes) context_.underWay.nodes.erase(node);
