@@ -44,9 +44,8 @@ Result<void> readTree(BitReader& in, uint32_t tree, size_t maxNodes, std::vector
     uint64_t path;
     unsigned depth;
   };
-  std::array<Place, kMaxDepth + 3>
-      stack;  // a right sibling for each depth, the node, room to spare
-  stack[0] = {0, 0};
+  // A right sibling for each depth, the node itself, room to spare.
+  std::array<Place, kMaxDepth + 3> stack{};
   unsigned pending = 1;
   while (pending > 0) {
     uint64_t bits = in.peek(2 * kVisits) << (64 - 2 * kVisits);

@@ -81,6 +81,7 @@ TEST(AccessLog, WritesAllLinesOfAllThreads) {
     auto log = AccessLog::open(folder / "log", LogFormat::json);
     ASSERT_TRUE(log) << log.error().message;
     std::vector<std::thread> threads;
+    threads.reserve(kThreads);
     for (int i = 0; i < kThreads; ++i)
       threads.emplace_back([&log] {
         for (int line = 0; line < kLines; ++line) (*log)->add(someLogEntry());

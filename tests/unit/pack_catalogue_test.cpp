@@ -238,6 +238,7 @@ TEST_F(PackCatalogueTest, RequestsGoOnWhilePacksAreReplaced) {
   std::atomic<int> wrong{0};
   std::atomic<int> right{0};
   std::vector<std::thread> receivers;
+  receivers.reserve(3);
   for (int i = 0; i < 3; ++i)
     receivers.emplace_back([&] {
       while (!ended) {
