@@ -63,7 +63,8 @@ class Demo:
         """The proxy's counters after a run, by name with labels."""
         text = (self.folder / f"{run}.metrics").read_text(encoding="utf-8")
         lines = [line.rsplit(" ", 1) for line in text.splitlines() if not line.startswith("#")]
-        return {name: int(value) for name, value in lines}
+        # Sums of seconds have fractions; what is read here are counts.
+        return {name: int(float(value)) for name, value in lines}
 
     def upstream_record_requests(self, run):
         """How often the proxy had asked the service for records, up to the end of a run."""
