@@ -13,33 +13,10 @@ Tables in Markdown on stdout. Exit status 1 if a stream did not end with the exa
 import argparse
 import json
 import pathlib
-import subprocess
 import sys
 import tempfile
 
-
-class Server:
-    """A program that prints its address when it is ready, ended with the block."""
-
-    def __init__(self, *command):
-        self.process = subprocess.Popen(
-            [str(part) for part in command], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True
-        )
-        line = self.process.stdout.readline()
-        if "listening on " not in line:
-            sys.exit(f"{command[0]} did not start")
-        self.url = line.split()[-1]
-
-    def __enter__(self):
-        return self
-
-    def __exit__(self, *_):
-        self.process.terminate()
-        self.process.wait()
-
-
-def run(*command):
-    return subprocess.run([str(part) for part in command], capture_output=True, text=True)
+from served_programs import Server, run
 
 
 def view(programs, url, *options):
