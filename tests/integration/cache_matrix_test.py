@@ -63,6 +63,8 @@ class Origin:
         """Its connections are taken and not answered."""
         for replica in self.replicas:
             replica.process.send_signal(signal.SIGSTOP)
+        for replica in self.replicas:  # until then, some of its threads go on
+            os.waitid(os.P_PID, replica.process.pid, os.WSTOPPED)
         try:
             yield
         finally:
