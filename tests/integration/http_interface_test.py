@@ -12,7 +12,6 @@ import base64
 import json
 import os
 import shutil
-import socket
 import subprocess
 import sys
 import tempfile
@@ -21,7 +20,7 @@ import time
 import unittest
 
 from node_sets import bitstring, ids
-from running_programs import BINARY, Program, ask, counters
+from running_programs import BINARY, Program, ask, counters, free_port
 
 IMMUTABLE = "public, max-age=31536000, immutable, no-transform"
 
@@ -298,9 +297,7 @@ class Interface(unittest.TestCase):
         self.assertLess(counters(proxy.port)["meshfront_cache_bytes"], 64 * 1024)
 
     def test_restart_of_the_service(self):
-        with socket.socket() as probe:
-            probe.bind(("127.0.0.1", 0))
-            address = f"127.0.0.1:{probe.getsockname()[1]}"
+        address = f"127.0.0.1:{free_port()}"
         command = (self.program("meshfront-serve"), "--packs", self.packs, "--listen", address)
         service = Program(*command)
         proxy = Program(self.program("meshfront-proxy"), "--upstream", f"http://{address}",
@@ -322,10 +319,8 @@ class Interface(unittest.TestCase):
         self.assertEqual(ask(service.port, new).body, waiting[0].body)
 
     def test_an_absent_service(self):
-        with socket.socket() as probe:
-            probe.bind(("127.0.0.1", 0))
-            port = probe.getsockname()[1]
-        proxy = Program(self.program("meshfront-proxy"), "--upstream", f"http://127.0.0.1:{port}",
+        proxy = Program(self.program("meshfront-proxy"),
+                        "--upstream", f"http://127.0.0.1:{free_port()}",
                         "--listen", "127.0.0.1:0", "--patience", "0.2")
         self.addCleanup(proxy.stop)
         response = ask(proxy.port, f"{self.fixed}/base")

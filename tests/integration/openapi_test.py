@@ -22,7 +22,7 @@ import unittest
 
 import openapi_file
 from node_sets import bitstring, ids
-from running_programs import BINARY, Program, ask, counters
+from running_programs import BINARY, Program, ask, counters, free_port
 
 WAITING_PLACES = 4096  # requests that may wait in a proxy for a thread
 
@@ -169,9 +169,7 @@ class Description(unittest.TestCase):
         self.provoke("500", self.damaged.port)
 
     def test_502_and_503_without_an_upstream(self):
-        with socket.socket() as probe:
-            probe.bind(("127.0.0.1", 0))
-            trouble = Trouble(self, "--patience", "0", upstream=probe.getsockname()[1])
+        trouble = Trouble(self, "--patience", "0", upstream=free_port())
         self.addCleanup(trouble.stop)
         self.provoke("502", trouble.port)
         self.provoke("503", trouble.port, ["/readyz"])

@@ -5,29 +5,15 @@ stand there exactly as written here. Everything a program writes goes into the f
 Runs as root, where the programs take their own users, or as anyone else.
 """
 import os
-import random
 import shlex
 import signal
-import socket
 import subprocess
 import time
 
-from running_programs import Program, ask, counters
+from running_programs import Program, ask, counters, free_port
 
 DEPLOY = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "deploy")
 START_SECONDS = 30
-
-
-def free_port():
-    """Outside the range that connections get theirs from, for it is bound only some time later."""
-    while True:
-        port = random.randrange(12000, 32000)
-        with socket.socket() as probe:
-            try:
-                probe.bind(("127.0.0.1", port))
-                return port
-            except OSError:
-                pass
 
 
 def shipped(path, replacements):

@@ -1,10 +1,24 @@
 """Starts a program of meshfront on a free port, and asks it."""
 import http.client
+import random
 import re
 import signal
+import socket
 import subprocess
 
 BINARY = "application/octet-stream"
+
+
+def free_port():
+    """Outside the range that connections get theirs from, for it is bound only some time later."""
+    while True:
+        port = random.randrange(12000, 32000)
+        with socket.socket() as probe:
+            try:
+                probe.bind(("127.0.0.1", port))
+                return port
+            except OSError:
+                pass
 
 
 class Program:
