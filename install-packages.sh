@@ -14,7 +14,6 @@ build=(
   libopenmesh-dev                      # encoder: connectivity while simplifying
   liblmdb-dev                          # packs
   libssl-dev                           # digests: revisions and entity tags
-  libmicrohttpd-dev                    # HTTP server of service and proxy
   libcurl4-openssl-dev                 # HTTP client of proxy and viewer
   nlohmann-json3-dev                   # metadata, reports
   libcli11-dev                         # command lines
@@ -42,6 +41,7 @@ test=(
 bench=(
   libmeshoptimizer-dev                 # meshopt_simplify
   draco                                # draco_encoder
+  wrk                                  # requests over HTTP, beside nginx
 )
 
 usage() {

@@ -14,11 +14,12 @@ FrontMetrics::FrontMetrics(Metrics& metrics, const std::shared_ptr<const InFligh
     return &metrics.counter("meshfront_refused_total",
                             "Requests refused whatever they ask for: fields too long (header), too "
                             "many connections from the address, too many in all (connections), too "
-                            "much memory in flight.",
+                            "much memory in flight, a URL beyond 64 KiB (target), no sound request "
+                            "of HTTP/1.1 (malformed).",
                             std::string("reason=\"") + reason + "\"");
   };
   refused_ = {refusedFor("header"), refusedFor("address"), refusedFor("connections"),
-              refusedFor("memory")};
+              refusedFor("memory"), refusedFor("target"),  refusedFor("malformed")};
   const auto cutIn = [&](const char* phase) {
     return &metrics.counter("meshfront_cut_total",
                             "Connections cut because line, header, content or answer took too "

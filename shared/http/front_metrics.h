@@ -8,7 +8,6 @@
 #include <cstdint>
 #include <memory>
 
-#include "shared/http/connection_watch.h"
 #include "shared/http/metrics.h"
 
 namespace meshfront {
@@ -35,8 +34,14 @@ class InFlight {
   alignas(64) std::atomic<size_t> bytes_{0};
 };
 
+// What a connection is doing.
+//
+//   idle --first octet--> line --its end--> header --end of the fields--> content --its end-->
+//   answer --sent--> idle
+enum class ConnectionPhase : uint8_t { idle, line, header, content, answer };
+
 // Why a request was refused before anybody looked at what it asks for.
-enum class Refusal : uint8_t { none, header, address, connections, memory };
+enum class Refusal : uint8_t { none, header, address, connections, memory, target, malformed };
 
 struct FrontMetrics {
   // Shared with what /metrics calls, which may outlive the server.
@@ -45,16 +50,14 @@ struct FrontMetrics {
   [[nodiscard]] Counter& refused(Refusal reason) {
     return *refused_[static_cast<size_t>(reason) - 1];
   }
-  [[nodiscard]] Counter& cut(ConnectionWatch::Phase phase) {
-    return *cut_[static_cast<size_t>(phase)];
-  }
+  [[nodiscard]] Counter& cut(ConnectionPhase phase) { return *cut_[static_cast<size_t>(phase)]; }
 
   Histogram& requestSeconds;
   Counter& connections;
   Counter& unfinished;  // answers that were not sent to their end
 
  private:
-  std::array<Counter*, 4> refused_{};
+  std::array<Counter*, 6> refused_{};
   std::array<Counter*, 5> cut_{};
 };
 

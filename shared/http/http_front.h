@@ -1,8 +1,12 @@
-// The HTTP server: libmicrohttpd with epoll threads in front of an HttpHandler.
+// The HTTP server: HTTP/1.1 and 1.0 in front of an HttpHandler.
+//
+//   EventLoop (one a thread) -> Connection -> RequestHeadReader, ContentReader -> Exchange ->
+//   HttpHandler -> responseHead -> one sendmsg, which does not copy the content
 //
 // A request is answered on the thread that serves its connection if that takes no wait. Otherwise
-// the connection is suspended, a worker computes the answer and resumes the connection; others on
-// the thread go on meanwhile.
+// a worker makes the answer and posts it back to that thread, which serves others meanwhile.
+// Answers are sent in the order of the requests; what follows a request is not read before its
+// answer has been handed to the kernel.
 #pragma once
 
 #include <cstdint>

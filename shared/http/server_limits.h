@@ -3,15 +3,19 @@
 //
 // Memory is bounded by these limits, whatever clients send. A server holds at most
 //
-//   (maxConnections + 1,024) * 192 KiB               lines, fields and buffers of connections
+//   (maxConnections + 1,024) * 1 KiB                 connections
+//   + those of them that are in a request * (192 KiB + 2 * maxHeader)
+//                                                    its line and fields, what follows it
+//   + threads * 64 KiB                               what is being read
 //   + memoryInFlight                                 contents received, answers being sent
 //   + (threads + waitingThreads) * (3 * maxAnswer + 16 B * maxIds)    answers being put together
 //   + waitingThreads * 160 B * maxRecords            proxy: records fetched for these answers
 //   + the budget of the index (service) or of the cache (proxy)
 //
 // because contents and answers are counted in memoryInFlight before they are kept or queued, and
-// refused by 503 where they do not fit. Few come near: receivers ask for some thousand nodes at a
-// time. Where memory is scarce, lower maxRecords first.
+// refused by 503 where they do not fit. A request holds 192 KiB only where its line comes in pieces
+// and nearly is too long; a usual one holds its URL. Few come near: receivers ask for some thousand
+// nodes at a time. Where memory is scarce, lower maxRecords first.
 #pragma once
 
 #include <cstddef>

@@ -136,7 +136,8 @@ TEST_F(HttpFrontTest, FinishesWaitingAnswersWhenItEnds) {
   EXPECT_EQ(answer.get(), "GET /wait   ");
 }
 
-// The library may ask for the answer again while it stops; how often depends on the moment.
+// A worker posts its answer while the loops are about to end; which comes first depends on the
+// moment.
 TEST_F(HttpFrontTest, EndsAtAnyMomentOfAnAnswer) {
   for (int i = 0; i < 60; ++i) {
     EchoHandler handler;

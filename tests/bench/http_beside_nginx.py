@@ -1,0 +1,229 @@
+#!/usr/bin/env python3
+"""Prints requests/s over HTTP on one core: nginx with static files, the service, the proxy.
+
+  http_beside_nginx.py BIN_FOLDER [--sizes 4096 16384 65536] [--rounds 7] [--seconds 3]
+                       [--connections 64] [--json]
+
+For each size a synthetic pack whose chunks have about that many octets, and two answers of it:
+  chunk    one chunk as it lies in the pack (.../chunks/N);
+  records  a set of nodes, whose records are looked up and copied one by one (.../splits/IDS).
+nginx serves both as files of exactly these octets: one worker, sendfile, tcp_nopush, files kept
+open, no log. The service and the proxy, which has everything cached, run with one thread. wrk asks
+with one thread over connections that are kept. Each server runs on the first core, wrk on the
+second; they take turns within a round, and what is printed are medians of all rounds: requests/s,
+service/nginx and proxy/service. Needs nginx and wrk. Exit status 1 if an answer was wrong.
+"""
+
+import argparse
+import contextlib
+import json
+import os
+import pathlib
+import re
+import signal
+import socket
+import statistics
+import subprocess
+import sys
+import tempfile
+import time
+import urllib.request
+
+from served_programs import Server, run
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "integration"))
+from node_sets import ids  # noqa: E402
+
+SERVER_CORE, CLIENT_CORE = "0", "1"
+RECORD_BITS = 41  # of a synthetic record on average, for a first guess
+
+NGINX = """
+{user}
+daemon off;
+worker_processes 1;
+pid {folder}/nginx.pid;
+error_log {folder}/error.log;
+events {{ worker_connections 4096; }}
+http {{
+  sendfile on;
+  tcp_nopush on;
+  tcp_nodelay on;
+  keepalive_timeout 75;
+  keepalive_requests 1000000000;
+  open_file_cache max=1000 inactive=1h;
+  open_file_cache_valid 1h;
+  access_log off;
+  default_type application/octet-stream;
+  client_body_temp_path {folder}/body;
+  proxy_temp_path {folder}/proxy;
+  fastcgi_temp_path {folder}/fastcgi;
+  uwsgi_temp_path {folder}/uwsgi;
+  scgi_temp_path {folder}/scgi;
+  server {{
+    listen 127.0.0.1:{port} backlog=4096;
+    root {folder}/files;
+    location / {{ add_header Cache-Control "public, max-age=31536000, immutable"; }}
+  }}
+}}
+"""
+
+
+def get(url):
+    opener = urllib.request.build_opener(urllib.request.ProxyHandler({}))
+    with opener.open(url, timeout=60) as response:
+        return response.read()
+
+
+class Nginx:
+    def __init__(self, folder):
+        self.folder = folder
+        (folder / "files").mkdir()
+        with socket.socket() as free:
+            free.bind(("127.0.0.1", 0))
+            port = free.getsockname()[1]
+        self.url = f"http://127.0.0.1:{port}"
+        user = "user root;" if os.geteuid() == 0 else ""  # for the folder, which is the caller's
+        (folder / "nginx.conf").write_text(NGINX.format(user=user, folder=folder, port=port))
+        self.process = subprocess.Popen(
+            ["taskset", "-c", SERVER_CORE, "nginx", "-c", folder / "nginx.conf", "-e", folder / "error.log"],
+            stderr=subprocess.DEVNULL,
+        )
+
+    def __enter__(self):
+        for _ in range(100):
+            with contextlib.suppress(OSError), socket.create_connection(
+                ("127.0.0.1", int(self.url.rsplit(":", 1)[1])), 1
+            ):
+                return self
+            time.sleep(0.05)
+        sys.exit("nginx does not start")
+
+    def __exit__(self, *_):
+        self.process.send_signal(signal.SIGQUIT)
+        self.process.wait()
+
+    def add(self, name, content):
+        (self.folder / "files" / name).write_bytes(content)
+        return f"/{name}"
+
+
+def write_pack(programs, packs, size):
+    """One whose chunks have about `size` octets, and with records for sets of that size."""
+    records = size * 8 // RECORD_BITS
+    done = run(
+        programs / "write-synthetic-pack", packs / f"{size}.pack", f"chunks-{size}", "1", "4000", "9", records
+    )
+    if done.returncode != 0:
+        sys.exit(done.stderr)
+    return done.stdout.split()[1].rstrip(":")
+
+
+def chunk_near(service, fixed, size):
+    """The target of the chunk, of the first 40, that is nearest to the size."""
+    count = json.loads(get(f"{service}{fixed.rsplit('/', 1)[0]}"))["chunkCount"]
+    chunks = [f"{fixed}/chunks/{n}" for n in range(min(count, 40))]
+    return min(chunks, key=lambda target: abs(len(get(service + target)) - size))
+
+
+def records_near(service, fixed, size):
+    """The target of a set of trees, each to a depth of six, whose answer is nearest to the size."""
+
+    def target(trees):
+        return f"{fixed}/splits/{ids([(5 + tree, '') for tree in range(trees)])}?levels=6"
+
+    fewest, most = 1, 2000
+    while fewest < most:
+        middle = (fewest + most) // 2
+        if len(get(service + target(middle))) < size:
+            fewest = middle + 1
+        else:
+            most = middle
+    return target(fewest)
+
+
+def requests_a_second(url, connections, seconds):
+    done = run("taskset", "-c", CLIENT_CORE, "wrk", "-t1", f"-c{connections}", f"-d{seconds}s", url)
+    rate = re.search(r"Requests/sec:\s+([\d.]+)", done.stdout)
+    if not rate or "Non-2xx" in done.stdout or "Socket errors" in done.stdout:
+        sys.exit(f"wrk {url}: {done.stdout}{done.stderr}")
+    return float(rate.group(1))
+
+
+def measure(cases, options):
+    """cases: [{urls: {server: url}}]. Adds {server: median of requests/s}; servers take turns."""
+    rates = [{server: [] for server in case["urls"]} for case in cases]
+    for number in range(options.rounds):
+        for case, found in zip(cases, rates):
+            for server, url in case["urls"].items():
+                found[server].append(requests_a_second(url, options.connections, options.seconds))
+        if sys.stderr.isatty():
+            print(f"\rround {number + 1} of {options.rounds}", end="", file=sys.stderr)
+    if sys.stderr.isatty():
+        print(file=sys.stderr)
+    for case, found in zip(cases, rates):
+        case["rates"] = {server: statistics.median(values) for server, values in found.items()}
+        # Of each round, since what else the machine does differs from round to round.
+        for over, under in (("service", "nginx"), ("proxy", "service")):
+            quotients = [a / b for a, b in zip(found[over], found[under])]
+            case[f"{over}/{under}"] = statistics.median(quotients)
+
+
+def prepare(service, proxy, nginx, revisions):
+    """A case for each size and kind of answer; the proxy has all of them cached then."""
+    cases = []
+    for size, revision in revisions.items():
+        fixed = f"/v1/meshes/chunks-{size}/{revision}"
+        for kind, find in (("chunk", chunk_near), ("records", records_near)):
+            target = find(service.url, fixed, size)
+            content = get(service.url + target)
+            urls = {
+                "nginx": nginx.url + nginx.add(f"{kind}-{size}", content),
+                "service": service.url + target,
+                "proxy": proxy.url + target,
+            }
+            if any(get(url) != content for url in urls.values() for _ in range(2)):
+                sys.exit(f"{target} is not answered alike")
+            cases.append({"size": size, "answer": kind, "octets": len(content), "urls": urls})
+    return cases
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("programs", type=pathlib.Path, metavar="BIN_FOLDER")
+    parser.add_argument("--sizes", type=int, nargs="+", default=[4096, 16384, 65536], help="octets")
+    parser.add_argument("--rounds", type=int, default=7)
+    parser.add_argument("--seconds", type=int, default=3, help="of each run of wrk")
+    parser.add_argument("--connections", type=int, default=64)
+    parser.add_argument("--json", action="store_true")
+    options = parser.parse_args()
+    with contextlib.ExitStack() as stack:
+        folder = pathlib.Path(stack.enter_context(tempfile.TemporaryDirectory()))
+        packs = folder / "packs"
+        packs.mkdir()
+        revisions = {size: write_pack(options.programs, packs, size) for size in options.sizes}
+        pinned = ("taskset", "-c", SERVER_CORE)
+        listen = ("--listen", "127.0.0.1:0", "--threads", "1")
+        service = stack.enter_context(
+            Server(*pinned, options.programs / "meshfront-serve", "--packs", packs, *listen)
+        )
+        proxy = stack.enter_context(
+            Server(*pinned, options.programs / "meshfront-proxy", "--upstream", service.url, *listen)
+        )
+        nginx = stack.enter_context(Nginx(folder))
+        cases = prepare(service, proxy, nginx, revisions)
+        measure(cases, options)
+    if options.json:
+        print(json.dumps([{key: value for key, value in case.items() if key != "urls"} for case in cases]))
+        return
+    print("| answer | octets | nginx, requests/s | service | proxy | service/nginx | proxy/service |")
+    print("|---" * 7 + "|")
+    for case in cases:
+        rates = " | ".join(f"{case['rates'][server]:.0f}" for server in ("nginx", "service", "proxy"))
+        print(
+            f"| {case['answer']} | {case['octets']} | {rates} | "
+            f"{case['service/nginx']:.2f} | {case['proxy/service']:.2f} |"
+        )
+
+
+if __name__ == "__main__":
+    main()
