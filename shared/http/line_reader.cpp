@@ -6,7 +6,7 @@
 namespace meshfront {
 
 std::optional<std::string_view> LineReader::take(std::string_view& bytes, size_t longest) {
-  if (std::exchange(whole_, false)) begun_.clear();
+  if (std::exchange(whole_, false)) begun_ = {};  // a long one is not kept
   if (tooLong_) return std::nullopt;
   const size_t room = longest > begun_.size() ? longest - begun_.size() : 0;
   const size_t end = bytes.substr(0, room).find('\n');

@@ -16,7 +16,9 @@ class LineReader {
   [[nodiscard]] std::optional<std::string_view> take(std::string_view& bytes, size_t longest);
   [[nodiscard]] bool tooLong() const { return tooLong_; }
   // What has come of a line that is not whole, or what was held of one that is too long.
-  [[nodiscard]] std::string_view begun() const { return begun_; }
+  [[nodiscard]] std::string_view begun() const {
+    return whole_ ? std::string_view() : std::string_view(begun_);
+  }
 
  private:
   std::string begun_;

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Prints requests/s over HTTP on one core: nginx with static files, the service, the proxy.
 
-  http_beside_nginx.py BIN_FOLDER [--sizes 4096 16384 65536] [--rounds 7] [--seconds 3]
-                       [--connections 64] [--json]
+  http_beside_nginx.py BIN_FOLDER [--sizes 4096 16384 65536] [--answers chunk records]
+                       [--rounds 7] [--seconds 3] [--connections 64] [--json]
 
 For each size a synthetic pack whose chunks have about that many octets, and two answers of it:
   chunk    one chunk as it lies in the pack (.../chunks/N);
@@ -11,7 +11,9 @@ nginx serves both as files of exactly these octets: one worker, sendfile, tcp_no
 open, no log. The service and the proxy, which has everything cached, run with one thread. wrk asks
 with one thread over connections that are kept. Each server runs on the first core, wrk on the
 second; they take turns within a round, and what is printed are medians of all rounds: requests/s,
-service/nginx and proxy/service. Needs nginx and wrk. Exit status 1 if an answer was wrong.
+service/nginx and proxy/service; then microseconds of processor that a request took the server,
+which other work on the machine disturbs less. Needs nginx and wrk. Exit status 1 if an answer was
+wrong.
 """
 
 import argparse
@@ -102,6 +104,10 @@ class Nginx:
         self.process.send_signal(signal.SIGQUIT)
         self.process.wait()
 
+    def worker(self):
+        pid = self.process.pid
+        return int(pathlib.Path(f"/proc/{pid}/task/{pid}/children").read_text().split()[0])
+
     def add(self, name, content):
         (self.folder / "files" / name).write_bytes(content)
         return f"/{name}"
@@ -141,26 +147,42 @@ def records_near(service, fixed, size):
     return target(fewest)
 
 
-def requests_a_second(url, connections, seconds):
+ANSWERS = {"chunk": chunk_near, "records": records_near}
+
+
+def processor_seconds(pid):
+    fields = pathlib.Path(f"/proc/{pid}/stat").read_text().rsplit(")", 1)[1].split()
+    return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+
+
+def ask_many(url, pid, connections, seconds):
+    """Requests/s, and microseconds of processor that one took the server."""
+    used = processor_seconds(pid)
     done = run("taskset", "-c", CLIENT_CORE, "wrk", "-t1", f"-c{connections}", f"-d{seconds}s", url)
+    used = processor_seconds(pid) - used
     rate = re.search(r"Requests/sec:\s+([\d.]+)", done.stdout)
-    if not rate or "Non-2xx" in done.stdout or "Socket errors" in done.stdout:
+    count = re.search(r"(\d+) requests in", done.stdout)
+    if not rate or not count or "Non-2xx" in done.stdout or "Socket errors" in done.stdout:
         sys.exit(f"wrk {url}: {done.stdout}{done.stderr}")
-    return float(rate.group(1))
+    return float(rate.group(1)), used * 1e6 / max(int(count.group(1)), 1)
 
 
-def measure(cases, options):
-    """cases: [{urls: {server: url}}]. Adds {server: median of requests/s}; servers take turns."""
+def measure(cases, pids, options):
+    """cases: [{urls: {server: url}}]. Adds medians for each server; servers take turns."""
     rates = [{server: [] for server in case["urls"]} for case in cases]
+    costs = [{server: [] for server in case["urls"]} for case in cases]
     for number in range(options.rounds):
-        for case, found in zip(cases, rates):
+        for case, found, cost in zip(cases, rates, costs):
             for server, url in case["urls"].items():
-                found[server].append(requests_a_second(url, options.connections, options.seconds))
+                rate, used = ask_many(url, pids[server], options.connections, options.seconds)
+                found[server].append(rate)
+                cost[server].append(used)
         if sys.stderr.isatty():
             print(f"\rround {number + 1} of {options.rounds}", end="", file=sys.stderr)
     if sys.stderr.isatty():
         print(file=sys.stderr)
-    for case, found in zip(cases, rates):
+    for case, found, cost in zip(cases, rates, costs):
+        case["microseconds"] = {server: statistics.median(values) for server, values in cost.items()}
         case["rates"] = {server: statistics.median(values) for server, values in found.items()}
         # Of each round, since what else the machine does differs from round to round.
         for over, under in (("service", "nginx"), ("proxy", "service")):
@@ -168,13 +190,13 @@ def measure(cases, options):
             case[f"{over}/{under}"] = statistics.median(quotients)
 
 
-def prepare(service, proxy, nginx, revisions):
+def prepare(service, proxy, nginx, revisions, answers):
     """A case for each size and kind of answer; the proxy has all of them cached then."""
     cases = []
     for size, revision in revisions.items():
         fixed = f"/v1/meshes/chunks-{size}/{revision}"
-        for kind, find in (("chunk", chunk_near), ("records", records_near)):
-            target = find(service.url, fixed, size)
+        for kind in answers:
+            target = ANSWERS[kind](service.url, fixed, size)
             content = get(service.url + target)
             urls = {
                 "nginx": nginx.url + nginx.add(f"{kind}-{size}", content),
@@ -191,6 +213,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("programs", type=pathlib.Path, metavar="BIN_FOLDER")
     parser.add_argument("--sizes", type=int, nargs="+", default=[4096, 16384, 65536], help="octets")
+    parser.add_argument("--answers", nargs="+", choices=ANSWERS, default=list(ANSWERS))
     parser.add_argument("--rounds", type=int, default=7)
     parser.add_argument("--seconds", type=int, default=3, help="of each run of wrk")
     parser.add_argument("--connections", type=int, default=64)
@@ -210,18 +233,22 @@ def main():
             Server(*pinned, options.programs / "meshfront-proxy", "--upstream", service.url, *listen)
         )
         nginx = stack.enter_context(Nginx(folder))
-        cases = prepare(service, proxy, nginx, revisions)
-        measure(cases, options)
+        cases = prepare(service, proxy, nginx, revisions, options.answers)
+        pids = {"service": service.process.pid, "proxy": proxy.process.pid, "nginx": nginx.worker()}
+        measure(cases, pids, options)
     if options.json:
         print(json.dumps([{key: value for key, value in case.items() if key != "urls"} for case in cases]))
         return
-    print("| answer | octets | nginx, requests/s | service | proxy | service/nginx | proxy/service |")
-    print("|---" * 7 + "|")
+    print("| answer | octets | nginx, requests/s | service | proxy | service/nginx | proxy/service "
+          "| nginx, us/request | service | proxy |")
+    print("|---" * 10 + "|")
     for case in cases:
-        rates = " | ".join(f"{case['rates'][server]:.0f}" for server in ("nginx", "service", "proxy"))
+        servers = ("nginx", "service", "proxy")
+        rates = " | ".join(f"{case['rates'][server]:.0f}" for server in servers)
+        costs = " | ".join(f"{case['microseconds'][server]:.1f}" for server in servers)
         print(
             f"| {case['answer']} | {case['octets']} | {rates} | "
-            f"{case['service/nginx']:.2f} | {case['proxy/service']:.2f} |"
+            f"{case['service/nginx']:.2f} | {case['proxy/service']:.2f} | {costs} |"
         )
 
 

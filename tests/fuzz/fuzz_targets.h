@@ -28,6 +28,8 @@ bool decompressFile(Bytes input);
 bool readMetadata(Bytes input);
 // A target and an If-None-Match field, a line each, then the content of a QUERY.
 bool readRequest(Bytes input);
+// How many octets come at a time, then those of a connection: requests of HTTP/1.1.
+bool readHttp(Bytes input);
 // Generations, length of the request's bitstring (2 bytes, little-endian), that bitstring, records.
 bool readAnswer(Bytes input);
 bool readBase(Bytes input);
@@ -44,21 +46,14 @@ struct Target {
   bool (*run)(Bytes input);
 };
 inline constexpr std::array kTargets{
-    Target{"ply", readPlyFile},
-    Target{"obj", readObjFile},
-    Target{"stl", readStlFile},
-    Target{"off", readOffFile},
-    Target{"gltf", readGltfFile},
-    Target{"glb", readGlbFile},
-    Target{"compressed", decompressFile},
-    Target{"metadata", readMetadata},
-    Target{"request", readRequest},
-    Target{"answer", readAnswer},
-    Target{"base", readBase},
-    Target{"chunk", readChunk},
-    Target{"chunk-index", readChunkIndex},
-    Target{"refine", refineMesh},
-    Target{"pack", readPack},
+    Target{"ply", readPlyFile},           Target{"obj", readObjFile},
+    Target{"stl", readStlFile},           Target{"off", readOffFile},
+    Target{"gltf", readGltfFile},         Target{"glb", readGlbFile},
+    Target{"compressed", decompressFile}, Target{"metadata", readMetadata},
+    Target{"request", readRequest},       Target{"http", readHttp},
+    Target{"answer", readAnswer},         Target{"base", readBase},
+    Target{"chunk", readChunk},           Target{"chunk-index", readChunkIndex},
+    Target{"refine", refineMesh},         Target{"pack", readPack},
 };
 
 }  // namespace meshfront::fuzz

@@ -15,6 +15,7 @@ struct Seed {
 
 [[nodiscard]] std::vector<Seed> textMeshSeeds();    // PLY, OBJ, STL, OFF
 [[nodiscard]] std::vector<Seed> binaryMeshSeeds();  // of the same, and glTF, GLB, compressed
-[[nodiscard]] std::vector<Seed> formatSeeds();      // everything that is this project's own
+[[nodiscard]] std::vector<Seed> httpSeeds();
+[[nodiscard]] std::vector<Seed> formatSeeds();  // everything that is this project's own
 
 }  // namespace meshfront::fuzz

@@ -12,7 +12,7 @@ int main(int argc, char** argv) {
     return 2;
   }
   size_t count = 0;
-  for (const auto& seeds : {textMeshSeeds(), binaryMeshSeeds(), formatSeeds()})
+  for (const auto& seeds : {textMeshSeeds(), binaryMeshSeeds(), httpSeeds(), formatSeeds()})
     for (const Seed& seed : seeds) {
       const auto folder = std::filesystem::path(argv[1]) / seed.target;
       std::error_code error;

@@ -7,6 +7,7 @@ Each status of each operation is provoked - from the service and through a proxy
 trouble that it means - and its fields, content type and content are compared with the file. What
 the file does not list must not be answered.
 """
+import http.client
 import json
 import os
 import re
@@ -22,7 +23,7 @@ import unittest
 
 import openapi_file
 from node_sets import bitstring, ids
-from running_programs import BINARY, Program, ask, counters, free_port
+from running_programs import BINARY, Program, Response, ask, counters, free_port
 
 WAITING_PLACES = 4096  # requests that may wait in a proxy for a thread
 
@@ -205,6 +206,41 @@ class Description(unittest.TestCase):
             thread.join(1)
         self.provoke("503", trouble.port,
                      [path for path in self.document["paths"] if path.startswith("/v1/")])
+
+    def assert_refused(self, name, status, program, octets):
+        """By the server, whatever was asked for."""
+        with socket.create_connection(("127.0.0.1", program.port), timeout=60) as connection:
+            connection.sendall(octets)
+            raw = http.client.HTTPResponse(connection)
+            raw.begin()
+            response = Response(raw)
+        self.assertEqual(status, response.status)
+        documented = self.document["components"]["responses"][name]
+        self.assertEqual([], openapi_file.violations(response, documented, True), name)
+
+    def test_refusals_of_any_request(self):
+        begun = b"GET /healthz HTTP/1.1\r\nHost: x\r\n"
+        for program in (self.service, self.proxy):
+            for name, status, octets in (
+                    ("BadRequest", 400, begun + b"A : b\r\n\r\n"),
+                    ("UriTooLong", 414, b"GET /" + b"a" * 70000),
+                    ("FieldsTooLarge", 431, begun + b"A: " + b"b" * 40000),
+                    ("CodingUnknown", 501, begun + b"Transfer-Encoding: gzip\r\n\r\n"),
+                    ("VersionUnknown", 505, b"GET /healthz HTTP/2.0\r\n\r\n")):
+                self.assert_refused(name, status, program, octets)
+        packs = os.path.join(self.folder, "packs")
+        for name, status, octets, option in (
+                ("RequestTimeout", 408, begun, ("--header-timeout", "0.2")),
+                ("TooManyConnections", 429, begun + b"\r\n",
+                 ("--max-connections-per-address", "1")),
+                ("Busy", 503, begun + b"\r\n", ("--max-connections", "1"))):
+            program = Program(self.program("meshfront-serve"), "--packs", packs, "--listen",
+                              "127.0.0.1:0", *option)
+            self.addCleanup(program.stop)
+            with socket.create_connection(("127.0.0.1", program.port)) as first:
+                first.sendall(begun + b"\r\n")
+                self.assertIn(b" 200 ", first.recv(1 << 16))
+                self.assert_refused(name, status, program, octets)
 
     # --- nothing else -------------------------------------------------------------------------------
 

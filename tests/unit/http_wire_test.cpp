@@ -65,7 +65,7 @@ class HttpWireTest : public testing::Test {
     EXPECT_NE(response.find("\r\nDate: "), std::string::npos);
     EXPECT_NE(response.find("\"status\":" + std::to_string(status)), std::string::npos);
     // Nothing behind it, whatever followed the request.
-    EXPECT_EQ(response.find("HTTP/1.1", 8), std::string::npos) << response;
+    EXPECT_EQ(response.find("HTTP/1.1 ", 8), std::string::npos) << response;
   }
   std::string logged() {
     front_.reset();

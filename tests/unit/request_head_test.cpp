@@ -87,6 +87,7 @@ TEST(RequestHead, CutShortWaitsForMore) {
 TEST(RequestHead, MayFollowOneEmptyLine) {
   EXPECT_EQ(readHead("\r\n" + kLine + kHost + "\r\n").state, HeadState::whole);
   EXPECT_EQ(refusalOf("\r\n\r\n" + kLine + kHost + "\r\n"), 400U);
+  EXPECT_EQ(refusalOf(std::string("\r\n\0", 3)), 400U);  // before the line's end
 }
 
 TEST(RequestHead, SaysWhetherTheConnectionIsKept) {
