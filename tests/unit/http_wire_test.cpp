@@ -1,8 +1,8 @@
 // What the server says to octets on the wire that no well-behaved client sends, or sends seldom.
 #include <gtest/gtest.h>
 
-#include <atomic>
 #include <fstream>
+#include <future>
 
 #include "shared/http/http_front.h"
 #include "tests/data/temporary_folder.h"
@@ -194,6 +194,43 @@ TEST_F(HttpWireTest, AnswersThoseThatSendNoMore) {
   client.send("GET /half");
   client.endSending();
   EXPECT_EQ(client.receiveAll(), "");
+}
+
+// Answers once it is let go on.
+class HeldUpHandler final : public HttpHandler {
+ public:
+  std::optional<HttpResponse> answerAtOnce(const HttpRequest&) override { return std::nullopt; }
+  HttpResponse answer(const HttpRequest& request) override {
+    goOn_.get_future().wait();
+    HttpResponse response;
+    response.content = HeldBytes::of(std::string(request.target));
+    return response;
+  }
+  HttpResponse overloaded(const HttpRequest&) override { return {}; }
+  void goOn() { goOn_.set_value(); }
+
+ private:
+  std::promise<void> goOn_;
+};
+
+// The answer comes when its connection has gone.
+TEST(HttpWire, CutsThoseWhoseAnswerTakesTooLong) {
+  HeldUpHandler handler;
+  Metrics metrics;
+  ServerLimits limits;
+  limits.answerTimeout = 0.2;
+  auto front = *HttpFront::start(handler, {.address = *resolveListenAddress("127.0.0.1:0"),
+                                           .waitingThreads = 1,
+                                           .limits = limits,
+                                           .metrics = &metrics});
+  RawClient client(front->port());
+  client.send("GET /a HTTP/1.1\r\nHost: x\r\n\r\n");
+  EXPECT_EQ(client.receiveAll(), "");  // hangs if it is not cut
+  EXPECT_NE(metrics.text().find("meshfront_cut_total{phase=\"answer\"} 1\n"), std::string::npos);
+  handler.goOn();
+  front.reset();
+  EXPECT_NE(metrics.text().find("meshfront_in_flight_bytes 0\n"), std::string::npos);
+  EXPECT_NE(metrics.text().find("meshfront_requests_in_flight 0\n"), std::string::npos);
 }
 
 }  // namespace
