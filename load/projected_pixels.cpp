@@ -5,9 +5,20 @@
 #include <cmath>
 #include <glm/mat4x4.hpp>
 #include <glm/vec4.hpp>
+#include <limits>
 
 namespace meshfront {
 namespace {
+
+constexpr float kBehindTheEye = std::numeric_limits<float>::quiet_NaN();
+
+// Three arguments, so that no branch is taken for what is as likely as not.
+float leastOf(float a, float b, float c) {
+  return std::min(std::min(a, b), c);
+}
+float mostOf(float a, float b, float c) {
+  return std::max(std::max(a, b), c);
+}
 
 // How much of [low, high] lies in [0, side].
 float shareInside(float low, float high, float side) {
@@ -39,25 +50,27 @@ void ProjectedPixels::project(std::span<const GridPosition> positions,
         clip * glm::vec4(static_cast<float>(p[0] - anchor[0]), static_cast<float>(p[1] - anchor[1]),
                          static_cast<float>(p[2] - anchor[2]), 1.0F);
     Projected& out = projected_[i];
-    out.inFront = at.w >= nearPlane;
-    if (!out.inFront) continue;
-    out.x = (at.x / at.w + 1) * halfWidth;
+    out.x = at.w >= nearPlane ? (at.x / at.w + 1) * halfWidth : kBehindTheEye;
     out.y = (at.y / at.w + 1) * halfHeight;
   }
 }
 
-float ProjectedPixels::pixelsOf(const Triangle& triangle, PixelSize picture) const {
+float ProjectedPixels::pixelsOf(const Triangle& triangle, float width, float height) const {
   const Projected& a = projected_[triangle[0]];
   const Projected& b = projected_[triangle[1]];
   const Projected& c = projected_[triangle[2]];
-  if (!a.inFront || !b.inFront || !c.inFront)
-    return a.inFront || b.inFront || c.inFront ? kCrossingPixels : 0;
   const float twice = (b.x - a.x) * (c.y - a.y) - (c.x - a.x) * (b.y - a.y);
-  if (!(twice > 0)) return 0;
-  const auto [left, right] = std::minmax({a.x, b.x, c.x});
-  const auto [low, high] = std::minmax({a.y, b.y, c.y});
-  return 0.5F * twice * shareInside(left, right, static_cast<float>(picture.width)) *
-         shareInside(low, high, static_cast<float>(picture.height));
+  if (!(twice > 0)) {
+    if (!std::isnan(twice)) return 0;
+    const bool allBehind = std::isnan(a.x) && std::isnan(b.x) && std::isnan(c.x);
+    return allBehind ? 0 : kCrossingPixels;
+  }
+  const float left = leastOf(a.x, b.x, c.x);
+  const float right = mostOf(a.x, b.x, c.x);
+  const float low = leastOf(a.y, b.y, c.y);
+  const float high = mostOf(a.y, b.y, c.y);
+  if (left >= 0 && right <= width && low >= 0 && high <= height) return 0.5F * twice;
+  return 0.5F * twice * shareInside(left, right, width) * shareInside(low, high, height);
 }
 
 std::span<const uint32_t> ProjectedPixels::count(const SelectivelyRefinedMesh& mesh,
@@ -67,9 +80,11 @@ std::span<const uint32_t> ProjectedPixels::count(const SelectivelyRefinedMesh& m
   const Projection projection = Projection::fit(camera, bounds, picture.aspect());
   project(mesh.positions(), quantization, projection, picture);
   sums_.assign(projected_.size(), 0);
+  const auto width = static_cast<float>(picture.width);
+  const auto height = static_cast<float>(picture.height);
   for (const Triangle& triangle : mesh.drawnCorners()) {
     if (triangle[0] == triangle[1]) continue;  // not drawn
-    const float pixels = pixelsOf(triangle, picture);
+    const float pixels = pixelsOf(triangle, width, height);
     if (pixels <= 0) continue;
     for (const uint32_t corner : triangle) sums_[corner] += pixels;
   }

@@ -34,13 +34,12 @@ class ProjectedPixels {
 
  private:
   struct Projected {
-    float x = 0;  // pixels from the picture's lower left corner
+    float x = 0;  // pixels from the picture's lower left corner; NaN: not in front of the eye
     float y = 0;
-    bool inFront = false;
   };
   void project(std::span<const GridPosition> positions, const Quantization& quantization,
                const Projection& projection, PixelSize picture);
-  [[nodiscard]] float pixelsOf(const Triangle& triangle, PixelSize picture) const;
+  [[nodiscard]] float pixelsOf(const Triangle& triangle, float width, float height) const;
 
   std::vector<Projected> projected_;  // by vertex slot
   std::vector<float> sums_;           // likewise
