@@ -57,6 +57,7 @@ class LoadRun::Worker {
       std::vector<Wake> woken;
       if (!takeMail(due, woken)) break;
       for (const Wake& wake : woken) {
+        if (stop_) break;
         if (places_[wake.place].tenant == wake.tenant) step(wake.place);
         (void)startReceivers();  // in the place of one that is done
       }
@@ -131,7 +132,7 @@ class LoadRun::Worker {
   std::mutex mutex_;  // guards the mailbox
   std::condition_variable mail_;
   std::vector<Wake> woken_;
-  bool stop_ = false;
+  std::atomic<bool> stop_ = false;
   std::thread thread_;
 };
 

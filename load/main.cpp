@@ -10,6 +10,7 @@
 
 #include "load/load_options.h"
 #include "load/load_report.h"
+#include "load/mesh_check.h"
 #include "shared/program/interrupt.h"
 #include "shared/receiver/http_fetcher.h"
 
@@ -42,6 +43,8 @@ class Load {
   Result<LoadReport> run(ViewChoice views) {
     LoadReport report;
     report.options = &options_;
+    if (Result<void> there = checkMesh(options_.run.url, fetcher_); !there)
+      return tl::unexpected(there.error());
     if (Result<void> read = readMetrics(report, &MetricsSpan::before); !read)
       return tl::unexpected(read.error());
     LoadRun run(options_.run, std::move(views), transport_);
@@ -50,8 +53,12 @@ class Load {
     report.result = run.end();
     report.transport = transport_.counts();
     report.peakMemory = peakMemory();
-    if (Result<void> read = readMetrics(report, &MetricsSpan::after); !read)
-      return tl::unexpected(read.error());
+    if (Result<void> read = readMetrics(report, &MetricsSpan::after); !read) {
+      // What receivers saw is told all the same.
+      std::cerr << "meshfront-load: " << read.error().message << '\n';
+      report.origin.reset();
+      report.proxy.reset();
+    }
     return report;
   }
 

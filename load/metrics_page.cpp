@@ -1,15 +1,14 @@
 #include "load/metrics_page.h"
 
 #include <charconv>
-#include <future>
-#include <memory>
 #include <utility>
+
+#include "load/immediate_fetch.h"
 
 namespace meshfront {
 namespace {
 
 constexpr size_t kMostMetricsBytes = size_t{4} << 20;
-constexpr std::chrono::seconds kMetricsPatience{30};
 
 }  // namespace
 
@@ -38,17 +37,9 @@ Result<MetricsPage> MetricsPage::fetch(const std::string& origin, Transport& tra
   request.url += "/metrics";
   request.maxBodyBytes = kMostMetricsBytes;
   const std::string url = request.url;
-  const auto answered = std::make_shared<std::promise<FetchResponse>>();
-  std::future<FetchResponse> answer = answered->get_future();
-  const FetchId id = transport.send(std::move(request), [answered](FetchResponse response) {
-    answered->set_value(std::move(response));
-  });
-  if (answer.wait_for(kMetricsPatience) != std::future_status::ready) {
-    transport.cancel(id);
-    return fail(ErrorCode::timedOut, url + " does not answer");
-  }
-  const FetchResponse response = answer.get();
-  if (response.status == 0) return tl::unexpected(response.error);
+  const Result<FetchResponse> answer = fetchNow(std::move(request), transport);
+  if (!answer) return tl::unexpected(answer.error());
+  const FetchResponse& response = *answer;
   if (response.status != 200)
     return fail(ErrorCode::unavailable,
                 url + " answers with status " + std::to_string(response.status));

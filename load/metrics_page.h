@@ -1,7 +1,6 @@
 // The counters of a service or a proxy, read from its /metrics (Prometheus text).
 #pragma once
 
-#include <chrono>
 #include <map>
 #include <string>
 #include <string_view>

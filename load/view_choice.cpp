@@ -18,6 +18,9 @@ Result<std::vector<CameraSpec>> readViews(const std::string& path) {
   for (size_t number = 1; std::getline(in, line); ++number) {
     if (!line.empty() && line.back() == '\r') line.pop_back();
     if (line.find_first_not_of(' ') == std::string::npos || line.front() == '#') continue;
+    if (std::any_of(line.begin(), line.end(), [](char c) { return c < ' ' || c > '~'; }))
+      return fail("views: " + path + ", line " + std::to_string(number) +
+                  " is no text; expected a camera a line");
     auto view = parseCameraSpec(line);
     if (!view)
       return fail("views: " + path + ", line " + std::to_string(number) + ": " +

@@ -57,11 +57,28 @@ assert 1 <= report["started"] <= 1000 and report["failed"] == 0, report
 assert report["most_alive"] <= 4, report
 ' "$work/timed.json" || fail "the run for a second did something else"
 
-# What goes wrong is said, with the right status.
-expect_status 2 "$bin/meshfront-load" --url "$proxy_origin/v1/meshes/mesh" --views "zipf:$work/none"
-expect_status 2 "$bin/meshfront-load" --url "$proxy_origin" --views "zipf:$work/views"
-expect_status 1 "$bin/meshfront-load" --url "$proxy_origin/v1/meshes/missing" --receivers 2 \
-  --views "zipf:$work/views" --patience 0 --json
-grep -q "no mesh 'missing'" "$work/out" || fail "no word about the missing mesh"
+# SIGTERM ends a run early, and the report still comes.
+timeout --preserve-status -s TERM 2 "$bin/meshfront-load" --url "$proxy_origin/v1/meshes/mesh" \
+  --views "zipf:$work/views" --receivers 1000000 --concurrency 4 --json \
+  --origin-metrics "$service_origin" >"$work/ended.json" 2>"$work/err" ||
+  fail "a run that SIGTERM ends has status $?"
+python3 -c '
+import json, sys
+report = json.load(open(sys.argv[1]))
+assert report["failed"] == 0 and report["settled"] + report["unfinished"] == report["started"], report
+assert 1 <= report["started"] < 1000000 and "origin" in report, report
+' "$work/ended.json" || fail "the report of a run that SIGTERM ended is wrong"
+
+# What goes wrong is said, with the right status, and at once: --patience is a minute.
+wrong() { expect_status "$1" timeout 30 "$bin/meshfront-load" --url "$2" --views "zipf:$3"; }
+wrong 2 "$proxy_origin/v1/meshes/mesh" "$work/none"
+wrong 2 "$proxy_origin" "$work/views"
+: >"$work/empty"
+wrong 2 "$proxy_origin/v1/meshes/mesh" "$work/empty"
+wrong 2 "$proxy_origin/v1/meshes/mesh" "$work/packs/mesh.pack"
+wrong 1 "$proxy_origin/v1/meshes/missing" "$work/views"
+grep -q "no mesh 'missing'" "$work/err" || fail "no word about the missing mesh"
+wrong 1 "$proxy_origin/elsewhere/v1/meshes/mesh" "$work/views"
+grep -q "no mesh 'mesh' at $proxy_origin/elsewhere" "$work/err" || fail "no word about the path"
 stop_server "$service"
 echo "ok: $(grep -o '"share":[0-9.e-]*' "$work/exact.json") of the record bytes came from the service"

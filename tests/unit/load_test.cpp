@@ -3,10 +3,13 @@
 
 #include <atomic>
 #include <fstream>
+#include <optional>
+#include <string>
 #include <thread>
 
 #include "load/load_run.h"
 #include "load/measured_transport.h"
+#include "load/mesh_check.h"
 #include "load/metrics_page.h"
 #include "load/view_choice.h"
 #include "tests/data/temporary_folder.h"
@@ -65,6 +68,9 @@ TEST(ViewChoice, SaysWhatIsWrong) {
   const std::string file = viewFile(folder, "whole\nazimut=3\n");
   EXPECT_NE(problem("each:" + file).find("line 2"), std::string::npos);
   EXPECT_NE(problem("each:" + viewFile(folder, "# none\n")).find("none"), std::string::npos);
+  EXPECT_NE(problem("each:" + viewFile(folder, "")).find("none"), std::string::npos);
+  EXPECT_NE(problem("each:" + viewFile(folder, "whole\n\x80\x01\n")).find("line 2 is no text"),
+            std::string::npos);
 }
 
 TEST(DurationPercentiles, AreRightToTwoPercent) {
@@ -117,6 +123,58 @@ class InstantTransport final : public Transport {
   const MeshService& service_;
   std::atomic<FetchId> last_{0};
 };
+
+// Answers every request alike, or never.
+class AnswerForAll final : public Transport {
+ public:
+  explicit AnswerForAll(std::optional<FetchResponse> response) : response_(std::move(response)) {}
+  [[nodiscard]] FetchId send(FetchRequest, Completion completion) override {
+    if (response_) completion(*response_);
+    return 1;
+  }
+  void cancel(FetchId) override {}
+
+ private:
+  const std::optional<FetchResponse> response_;
+};
+
+FetchResponse answerOf(unsigned status, const std::string& body = {}) {
+  FetchResponse response;
+  response.status = status;
+  response.body.assign(body.begin(), body.end());
+  return response;
+}
+
+TEST(MeshCheck, RefusesWhatCannotBeRight) {
+  const MeshUrl url = *parseMeshUrl("http://host/v1/meshes/torus");
+  const auto problem = [&](FetchResponse response) {
+    AnswerForAll transport(std::move(response));
+    const Result<void> checked = checkMesh(url, transport);
+    return checked ? std::string() : checked.error().message;
+  };
+  const std::string missing = problem(answerOf(404, R"({"title": "Not Found"})"));
+  EXPECT_NE(missing.find("no mesh 'torus' at http://host (HTTP 404: Not Found)"),
+            std::string::npos);
+  EXPECT_NE(problem(answerOf(403)).find("refused: HTTP 403"), std::string::npos);
+  EXPECT_NE(problem(answerOf(301)).find("refused: HTTP 301"), std::string::npos);
+  EXPECT_NE(problem(answerOf(200, "<html>")).find("no mesh of the v1"), std::string::npos);
+  FetchResponse endless;
+  endless.error = {ErrorCode::tooLarge, "too much"};
+  EXPECT_NE(problem(endless).find("too much"), std::string::npos);
+}
+
+TEST(MeshCheck, LetsReceiversWaitForAServerThatIsAway) {
+  const MeshUrl url = *parseMeshUrl("http://host/v1/meshes/torus");
+  for (const unsigned status : {0U, 429U, 500U, 502U, 503U, 504U}) {
+    FetchResponse response = answerOf(status);
+    response.error = {ErrorCode::unavailable, "gone"};
+    AnswerForAll transport(std::move(response));
+    EXPECT_TRUE(checkMesh(url, transport)) << status;
+  }
+  const MeshService service{TestMesh::torus(32, 16)};
+  InstantTransport transport(service);
+  EXPECT_TRUE(checkMesh(url, transport));
+}
 
 class LoadRunTest : public ::testing::Test {
  protected:
