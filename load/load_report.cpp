@@ -34,12 +34,8 @@ std::string percentilesText(const DurationPercentiles& durations) {
 
 }  // namespace
 
-double recordBytesServed(const MetricsSpan& span, const LoadReport& report) {
-  const double sets = span.grown("meshfront_record_bytes_total");
-  if (report.options->run.receiver.mode != FetchMode::chunks) return sets;
-  const double chunks = span.grown("meshfront_requests_total", "route=\"chunk\",status=\"200\"");
-  return sets + chunks * ratio(static_cast<double>(report.transport.recordBytes),
-                               static_cast<double>(report.transport.recordAnswers));
+double recordBytesServed(const MetricsSpan& span) {
+  return span.grown("meshfront_record_bytes_total") + span.grown("meshfront_chunk_bytes_total");
 }
 
 std::string progressLine(const LoadResult& result, const TransportCounts& counts,
@@ -79,12 +75,12 @@ std::string toText(const LoadReport& report) {
   if (result.resumed > 0) text << "; resumed " << result.resumed << " times";
   const auto received = static_cast<double>(counts.recordBytes);
   if (report.origin) {
-    const double served = recordBytesServed(*report.origin, report);
+    const double served = recordBytesServed(*report.origin);
     text << "\norigin     " << std::setprecision(0) << served << " bytes of records, "
          << std::setprecision(3) << 100 * ratio(served, received) << " % of what receivers got";
   }
   if (report.proxy) {
-    text << "\nproxy      " << std::setprecision(0) << recordBytesServed(*report.proxy, report)
+    text << "\nproxy      " << std::setprecision(0) << recordBytesServed(*report.proxy)
          << " bytes of records served, "
          << report.proxy->grown("meshfront_upstream_record_bytes_total") << " fetched";
   }
@@ -126,12 +122,12 @@ std::string toJson(const LoadReport& report) {
   };
   const auto received = static_cast<double>(counts.recordBytes);
   if (report.origin) {
-    const double served = recordBytesServed(*report.origin, report);
+    const double served = recordBytesServed(*report.origin);
     json["origin"] = {{"record_bytes", served}, {"share", ratio(served, received)}};
   }
   if (report.proxy) {
     json["proxy"] = {
-        {"record_bytes", recordBytesServed(*report.proxy, report)},
+        {"record_bytes", recordBytesServed(*report.proxy)},
         {"upstream_record_bytes", report.proxy->grown("meshfront_upstream_record_bytes_total")}};
   }
   return json.dump();

@@ -30,9 +30,8 @@ struct LoadReport {
   std::optional<MetricsSpan> proxy;
 };
 
-// Octets of records that a service or a proxy sent: counted by it for sets of nodes; for chunks its
-// answers times the mean length of those that receivers got.
-[[nodiscard]] double recordBytesServed(const MetricsSpan& span, const LoadReport& report);
+// Octets of records that a service or a proxy sent, as sets of nodes or as chunks.
+[[nodiscard]] double recordBytesServed(const MetricsSpan& span);
 
 [[nodiscard]] std::string toText(const LoadReport& report);  // lines
 [[nodiscard]] std::string toJson(const LoadReport& report);  // one object, one line

@@ -129,7 +129,8 @@ RecordService::RecordService(Catalogue& catalogue, Metrics& metrics, Options opt
                            "Node IDs in requests for records, descendants not counted.")),
       records_(metrics.counter("meshfront_records_total", "Records in answers.")),
       recordBytes_(metrics.counter("meshfront_record_bytes_total",
-                                   "Bytes of answers with records, checksums included.")) {
+                                   "Bytes of answers with records, checksums included.")),
+      chunkBytes_(metrics.counter("meshfront_chunk_bytes_total", "Bytes of chunks in answers.")) {
   for (unsigned kind = 0; kind < kRouteKinds; ++kind)
     for (size_t i = 0; i < kStatuses.size(); ++i)
       requests_[kind][i] =
@@ -206,6 +207,7 @@ Result<HttpResponse> RecordService::dispatch(const HttpRequest& request, const R
     const auto number = canonicalNumber(route.last);
     if (!number) return problem(400, "a chunk's number is a decimal number without leading zeros");
     content = store.chunk(*number, waiting);
+    if (content) chunkBytes_.add(content->bytes().size());
   }
   if (!content) return tl::unexpected(content.error());
   return immutableResponse(std::move(*content), inQuotes(route.revision), store.age());

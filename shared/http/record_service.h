@@ -56,6 +56,7 @@ class RecordService final : public HttpHandler {
   Counter& ids_;
   Counter& records_;
   Counter& recordBytes_;
+  Counter& chunkBytes_;
 };
 
 }  // namespace meshfront

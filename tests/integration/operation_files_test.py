@@ -105,6 +105,12 @@ class OperationFiles(unittest.TestCase):
                 if "label_values" not in query:
                     self.assertEqual(kind != "gauge", rated, query)
         self.assertEqual(len(dashboard["panels"]), len({p["id"] for p in dashboard["panels"]}))
+        asked = " ".join(queries)
+        for name in ("requests_in_flight", "in_flight_bytes", "connections_open", "refused_total",
+                     "cut_total", "request_seconds", "record_bytes_total", "chunk_bytes_total",
+                     "index_hits_total", "cache_record_hits_total", "cache_bytes",
+                     "cache_evicted_bytes_total", "upstream_seconds", "upstream_in_flight"):
+            self.assertIn(f"meshfront_{name}", asked)
 
 
 if __name__ == "__main__":

@@ -392,8 +392,9 @@ class Operation(unittest.TestCase):
         ask(proxy.port, f"/v1/meshes/mesh/{revision}/splits", "QUERY", bytes([0x98]),
             {"Content-Type": "application/octet-stream"})
         expected = {"requests_total", "requested_ids_total", "records_total", "record_bytes_total",
-                    "request_seconds", "requests_in_flight", "in_flight_bytes", "connections_open",
-                    "connections_total", "refused_total", "cut_total", "unfinished_total"}
+                    "chunk_bytes_total", "request_seconds", "requests_in_flight",
+                    "in_flight_bytes", "connections_open", "connections_total", "refused_total",
+                    "cut_total", "unfinished_total"}
         own = ({"index_bytes", "index_hits_total", "index_misses_total", "index_chunks_total",
                 "index_evicted_chunks_total", "index_evicted_bytes_total", "meshes",
                 "packs_broken", "packs_loaded_total", "pack_failures_total", "revisions_retired"},

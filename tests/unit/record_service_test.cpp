@@ -217,14 +217,16 @@ TEST_F(RecordServiceTest, LeavesOutALocationThatIsTooLong) {
 TEST_F(RecordServiceTest, CountsWhatItDid) {
   static_cast<void>(ask("GET", splits()));
   static_cast<void>(ask("GET", splits() + "?levels=0"));
+  const size_t chunk = bytes(ask("GET", fixed() + "/chunks/0")).size();
+  static_cast<void>(ask("GET", fixed() + "/chunks/4000000000"));
   const std::string page = text(ask("GET", "/metrics"));
   for (const std::string& line :
        {std::string("meshfront_requests_total{route=\"splits\",status=\"200\"} 1\n"),
         std::string("meshfront_requests_total{route=\"splits\",status=\"400\"} 1\n"),
         "meshfront_requested_ids_total " + std::to_string(wanted_.size()) + "\n",
         "meshfront_records_total " + std::to_string(wanted_.size()) + "\n",
-        "meshfront_record_bytes_total " + std::to_string(mesh_.answerTo(wanted_, {}).size()) +
-            "\n"})
+        "meshfront_record_bytes_total " + std::to_string(mesh_.answerTo(wanted_, {}).size()) + "\n",
+        "meshfront_chunk_bytes_total " + std::to_string(chunk) + "\n"})
     EXPECT_NE(page.find(line), std::string::npos) << line << page;
   EXPECT_EQ(text(ask("GET", "/healthz")), "ok\n");
   EXPECT_EQ(ask("GET", "/readyz").status, 200U);
