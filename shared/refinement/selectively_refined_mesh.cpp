@@ -1,6 +1,7 @@
 #include "shared/refinement/selectively_refined_mesh.h"
 
 #include <algorithm>
+#include <bit>
 
 #include "shared/codec/cut_coding.h"
 
@@ -19,6 +20,7 @@ Result<SelectivelyRefinedMesh> SelectivelyRefinedMesh::fromBase(BaseMesh base) {
   for (uint32_t tree = 0; tree < trees; ++tree) {
     const bool isVirtual = tree >= roots;
     mesh.ids_.push_back(NodeId::root(tree));
+    mesh.aboveTurn_.push_back(kNone);
     Node node;
     node.slot = tree;
     node.isLeaf = isVirtual || base.roots[tree].isLeaf;
@@ -126,7 +128,12 @@ Result<void> SelectivelyRefinedMesh::apply(NodeIndex index, std::span<const uint
   const auto positionOf = [&](uint32_t entry, unsigned depth) -> std::optional<GridPosition> {
     NodeIndex at = nodeAt_[edges_.destination(ring_[entry])];
     if (isVirtual(at)) return std::nullopt;
-    for (unsigned steps = entries_[entry].depth - depth; steps > 0; --steps) at = nodes_[at].parent;
+    // Left children stand where their parents stand, so only the right turns below `depth` count:
+    // the last of them leads to the depth at which the path's last one stands.
+    for (uint64_t path = entries_[entry].path; path != 0; path &= path - 1) {
+      if (64U - static_cast<unsigned>(std::countr_zero(path)) <= depth) break;
+      at = aboveTurn_[at];
+    }
     return nodes_[at].position;
   };
   const RingCut cut = walkRing(
@@ -149,6 +156,7 @@ Result<void> SelectivelyRefinedMesh::apply(NodeIndex index, std::span<const uint
         const VertexAttributes kept = nodeAttributes_[index];
         nodeAttributes_.push_back(right ? attributes : kept);
       }
+      aboveTurn_.push_back(right ? index : aboveTurn_[index]);
       ids_.push_back(id.child(right));
     }
     nodes_[index].leftChild = first;

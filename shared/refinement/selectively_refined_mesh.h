@@ -130,7 +130,9 @@ class SelectivelyRefinedMesh {
   uint32_t firstVirtual_ = 0;  // virtual vertices keep their slots, which equal their nodes
   uint32_t endVirtual_ = 0;
   std::vector<Node> nodes_;
-  std::vector<NodeId> ids_;        // by node
+  std::vector<NodeId> ids_;  // by node
+  // By node: the parent of the last right child on the way to it; kNone if there is none.
+  std::vector<NodeIndex> aboveTurn_;
   std::vector<NodeIndex> nodeAt_;  // by vertex slot
   std::vector<GridPosition> positions_;
   std::vector<VertexAttributes> attributes_;      // by vertex slot, where there are any

@@ -18,7 +18,6 @@ import argparse
 import json
 import os
 import pathlib
-import random
 import signal
 import socket
 import subprocess
@@ -27,6 +26,7 @@ import tempfile
 import time
 import urllib.request
 
+from random_views import write_views
 from served_programs import Server, run
 
 # What matters of a cache in front: answers are kept for as long as they say, and simultaneous
@@ -132,15 +132,6 @@ def costs(programs, url, mesh, view, fetch):
     row += [target[k] for k in ("bytes_down", "bytes_up", "requests")] if target["reached"] else ["-"] * 3
     row += [report[k] for k in ("bytes_down", "bytes_up", "requests")]
     return row + [f"{report['psnr']:.1f}", f"{100 * report['share']:.0f} %"]
-
-
-def write_views(path, count):
-    """Different views: some of the whole, some close, from everywhere."""
-    chance = random.Random(1)
-    with path.open("w") as out:
-        for _ in range(count):
-            zoom = chance.choice((1, 2, 4))
-            print(f"zoom={zoom};azimuth={chance.uniform(0, 360):.2f};elevation={chance.uniform(-20, 60):.2f}", file=out)
 
 
 def load(programs, url, views, receivers, fetch, *options):
