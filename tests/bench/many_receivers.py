@@ -37,17 +37,19 @@ def show(report, cpu):
     receivers, seconds = report["started"], report["seconds"]
     print(f"receivers  {receivers} started, {report['settled']} settled, {report['failed']} failed, "
           f"{report['unfinished']} given up; at most {report['most_alive']} at a time")
-    print(f"time       {seconds:.0f} s: {receivers / seconds:.1f} receivers and {report['requests'] / seconds:.0f} requests a second")
+    print(f"time       {seconds:.0f} s: {receivers / seconds:.1f} receivers and "
+          f"{report['requests'] / seconds:.0f} requests a second")
     print(f"settling   {percentiles(report['settled_seconds'])}")
     print(f"latency    {percentiles(report['latency_seconds'])} of a request")
     print(f"errors     {report['errors'] or 'none'}; {report['repeated_attempts']} attempts repeated, "
           f"{report['malformed_answers']} damaged answers, resumed {report['resumed']} times")
     for reason, count in report["failures"].items():
         print(f"           {count}: {reason}")
-    print(f"bytes      {report['bytes_down']:,} down ({report['record_bytes']:,} of records), {report['bytes_up']:,} up")
+    print(f"bytes      {report['bytes_down']:,} down ({report['record_bytes']:,} of records), "
+          f"{report['bytes_up']:,} up")
     print(f"records    {report['records']:,}")
-    print(f"origin     {report['origin']['record_bytes']:,.0f} bytes of records, {100 * report['origin']['share']:.3f} % of "
-          f"what receivers got")
+    print(f"origin     {report['origin']['record_bytes']:,.0f} bytes of records, {100 * report['origin']['share']:.3f} % "
+          f"of what receivers got")
     print(f"CPU        {cpu['service']:.1f} s service, {cpu['proxy']:.1f} s proxy, {cpu['receivers']:.1f} s receivers "
           f"({1000 * cpu['receivers'] / receivers:.1f} ms each)")
     print(f"memory     {report['peak_memory_bytes'] / 2**20:.0f} MiB of all receivers at most")

@@ -41,10 +41,13 @@ class Watch:
         self.programs = programs
         self.memory = {name: [] for name in programs}
 
+    def ended(self):
+        """Programs that run no more."""
+        statuses = {name: program.process.poll() for name, program in self.programs.items()}
+        return [f"{name} ended with status {status}" for name, status in statuses.items() if status is not None]
+
     def sample(self):
         for name, program in self.programs.items():
-            if program.process.poll() is not None:
-                raise Wrong(f"{name} ended with status {program.process.returncode}")
             self.memory[name].append(memory(program.process.pid))
 
     def held(self):
@@ -99,6 +102,8 @@ def soak(options, programs, counts, meshes):
     with Workers(counts, meshes, ports, options.seed, options.idle):
         while time.monotonic() < end:
             time.sleep(max(0.05, min(0.25, options.minutes / 10)))
+            if watch.ended():
+                break
             watch.sample()
             if time.monotonic() - shown < 10:
                 continue
@@ -107,10 +112,14 @@ def soak(options, programs, counts, meshes):
                 megabytes = " + ".join(f"{series[-1] / 2**20:.0f}" for series in watch.memory.values())
                 print(f"{shown - begin:6.0f} s  {counts.requests.total()} requests, {counts.hostile.total()} attacks, "
                       f"{counts.wrong} wrong; {megabytes} MiB", flush=True)
-    after, held = watch.settled(before)
+    report = {"seconds": time.monotonic() - begin, "memory": {}, "held_before": before, "held_after": before}
+    if ended := watch.ended():
+        counts.faults = ended + counts.faults
+        counts.wrong += len(ended)
+        return report
+    report["held_after"], held = watch.settled(before)
     for text in held:
         counts.fault(text)
-    report = {"seconds": time.monotonic() - begin, "memory": {}}
     for name, program in programs.items():
         if ask_once(program.port, "/readyz").status != 200:
             counts.fault(f"{name} is not ready at the end")
@@ -118,7 +127,7 @@ def soak(options, programs, counts, meshes):
         report["memory"][name] = {"early": early, "middle": middle, "end": late, "most": max(watch.memory[name])}
         if late - early > options.memory_slack * 2**20:
             counts.fault(f"{name} grew from {early >> 20} to {late >> 20} MiB after the warm-up")
-    return {**report, "held_before": before, "held_after": after}
+    return report
 
 
 def show(report):
@@ -132,8 +141,8 @@ def show(report):
         mib = {key: f"{value / 2**20:.1f}" for key, value in held.items()}
         changes = "; ".join(f"{what} {count} -> {report['held_after'][name][what]}"
                             for what, count in report["held_before"][name].items())
-        print(f"{name}: {mib['early']} MiB after the warm-up, {mib['middle']} in the middle, {mib['end']} at the end "
-              f"(at most {mib['most']}); {changes}")
+        print(f"{name}: {mib['early']} MiB after the warm-up, {mib['middle']} in the middle, {mib['end']} at the "
+              f"end (at most {mib['most']}); {changes}")
     print(f"wrong: {report['wrong']}")
     for text in report["faults"]:
         print(f"  {text}")
@@ -156,7 +165,8 @@ def main():
     with tempfile.TemporaryDirectory() as folder:
         for mesh in options.mesh:
             pack = pathlib.Path(folder) / f"{mesh.name.split('.')[0]}.pack"
-            subprocess.run([options.programs / "meshfront-encode", mesh, "--output", pack], check=True, capture_output=True)
+            encode = [options.programs / "meshfront-encode", mesh, "--output", pack]
+            subprocess.run(encode, check=True, capture_output=True)
         service = Program(options.programs / "meshfront-serve", "--packs", folder, "--listen", "127.0.0.1:0")
         proxy = Program(options.programs / "meshfront-proxy", "--upstream", f"http://127.0.0.1:{service.port}",
                         "--listen", "127.0.0.1:0")

@@ -107,7 +107,8 @@ def contradictory_length(mesh, port, chance):
 
 def endless_chunks(mesh, port, chance):
     """Content in pieces without an end, or of impossible sizes."""
-    head = f"QUERY {mesh.fixed}/splits HTTP/1.1\r\nHost: x\r\n{BINARY[0]}: {BINARY[1]}\r\nTransfer-Encoding: chunked\r\n\r\n"
+    head = (f"QUERY {mesh.fixed}/splits HTTP/1.1\r\nHost: x\r\n{BINARY[0]}: {BINARY[1]}\r\n"
+            "Transfer-Encoding: chunked\r\n\r\n")
     size = chance.choice((b"10000", b"100000", b"ffffffffffffffffff", b"-1", b"zz", b"1"))
     piece = size + b"\r\n" + bytes(min(int(size, 16), 1 << 20) if size.isdigit() else 100) + b"\r\n"
     connection = Connection(port, timeout=0.5 if size == b"1" else PATIENCE)
@@ -121,8 +122,8 @@ def endless_chunks(mesh, port, chance):
 def odd_request(mesh, port, chance):
     path = mesh.path
     line = chance.choice((
-        f"GET {path}", f"GET {path} HTTP/9.9", f"GET  {path} HTTP/1.1", f"get {path} HTTP/1.1", f"GET\t{path}\tHTTP/1.1",
-        f"GET {path}\x00 HTTP/1.1", f"GET {path} HTTP/1.1\r\n folded: x", f"GET {path} HTTP/1.1\r\nno colon",
+        f"GET {path}", f"GET {path} HTTP/9.9", f"GET  {path} HTTP/1.1", f"get {path} HTTP/1.1",
+        f"GET\t{path}\tHTTP/1.1", f"GET {path}\x00 HTTP/1.1", f"GET {path} HTTP/1.1\r\n folded: x", f"GET {path} HTTP/1.1\r\nno colon",
         f"GET {path} HTTP/1.1\r\nA b: c", f"GET {path} HTTP/1.1\r\n: empty", "GET /../../../etc/passwd HTTP/1.1",
         f"GET {path}%00 HTTP/1.1", "GET /v1/meshes/..%2f..%2fetc HTTP/1.1", f"{'G' * 9000} {path} HTTP/1.1",
         "* * HTTP/1.1", "CONNECT a:80 HTTP/1.1", "PRI * HTTP/2.0", "TRACE / HTTP/1.1"))
@@ -164,10 +165,14 @@ ALLOWED = {
 def hostile(mesh, port, chance):
     """(what was done, the answer's status)"""
     attack = chance.choice(list(ALLOWED))
-    status = attack(mesh, port, chance)
+    name = attack.__name__.replace("_", " ")
+    try:
+        status = attack(mesh, port, chance)
+    except (Wrong, WrongHttp, Closed, OSError, ValueError, KeyError) as problem:
+        raise Wrong(f"{name}: {problem!r}") from problem
     if status not in ALLOWED[attack]:
-        raise Wrong(f"{attack.__name__} is answered with {status}")
-    return attack.__name__.replace("_", " "), status
+        raise Wrong(f"{name} is answered with {status}")
+    return name, status
 
 
 def idle_storm(port, chance, count, seconds):

@@ -115,7 +115,8 @@ def damaged(octets):
 def wrong_spelling(mesh, chance):
     octets = bitstring(mesh.front(chance, chance.randint(1, 40)))
     good = name_of(octets)
-    wrong = chance.choice((good + "=", good + "+", good + ".", good[:-1] + "%41", "~", "", *map(name_of, damaged(octets))))
+    wrong = chance.choice((good + "=", good + "+", good + ".", good[:-1] + "%41", "~", "",
+                           *map(name_of, damaged(octets))))
     return Ask("wrong spelling", "GET", f"{mesh.fixed}/splits/{wrong}", 400)
 
 

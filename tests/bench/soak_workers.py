@@ -107,11 +107,10 @@ class Workers:
         asker.ask(port, invalid(mesh, chance))
 
     def attack(self, asker, mesh, port, chance):
-        state = repr(chance.getstate()[1][-1])
         try:
             self.counts.attacked(*hostile(mesh, port, chance))
-        except (Wrong, WrongHttp, OSError) as problem:
-            self.counts.fault(f"port {port}, hostile (place {state}): {problem!r}")
+        except Wrong as problem:
+            self.counts.fault(f"port {port}, {problem}")
 
     def idle(self, asker, mesh, port, chance):
         try:
