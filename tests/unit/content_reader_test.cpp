@@ -43,7 +43,7 @@ ReadContent readContentPieces(const RequestHead& head,
 }
 
 ReadContent readContent(const RequestHead& head, const std::string& text) {
-  const ReadContent whole = readContentPieces(head, {text});
+  ReadContent whole = readContentPieces(head, {text});
   for (size_t cut = 0; cut <= text.size(); ++cut)
     EXPECT_EQ(readContentPieces(head, {text.substr(0, cut), text.substr(cut)}), whole)
         << text << " cut at " << cut;

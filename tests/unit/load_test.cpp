@@ -34,6 +34,7 @@ TEST(ViewChoice, DrawsTheFirstViewsMostAndRepeatsWithItsSeed) {
     EXPECT_TRUE(choice) << choice.error().message;
     EXPECT_EQ(choice->size(), 50U);
     std::vector<size_t> drawn;
+    drawn.reserve(20'000);
     for (int i = 0; i < 20'000; ++i) drawn.push_back(choice->next());
     return drawn;
   };

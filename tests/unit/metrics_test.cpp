@@ -47,6 +47,7 @@ TEST(Metrics, HistogramsLoseNothingBetweenThreads) {
   Histogram histogram(kLatencyBounds);
   constexpr int kThreads = 12;  // more than it has parts
   std::vector<std::thread> threads;
+  threads.reserve(kThreads);
   for (int i = 0; i < kThreads; ++i)
     threads.emplace_back([&histogram] {
       for (int n = 0; n < 1000; ++n) histogram.observe(std::chrono::microseconds(n));

@@ -53,7 +53,7 @@ class RawClient {
         const size_t field = buffer_.find("Content-Length: ");
         const size_t length = end + 4 + (field < end ? std::stoul(buffer_.substr(field + 16)) : 0);
         if (buffer_.size() >= length) {
-          const std::string response = buffer_.substr(0, length);
+          std::string response = buffer_.substr(0, length);
           buffer_.erase(0, length);
           return response;
         }

@@ -43,7 +43,7 @@ std::string summary(const ReadHead& read) {
 
 // In one piece, in two of every size, octet by octet: always the same.
 ReadHead readHead(const std::string& text) {
-  const ReadHead whole = readPieces({text});
+  ReadHead whole = readPieces({text});
   for (size_t cut = 0; cut <= text.size(); ++cut) {
     const ReadHead cutRead = readPieces({text.substr(0, cut), text.substr(cut)});
     EXPECT_EQ(summary(cutRead), summary(whole)) << text << " cut at " << cut;
