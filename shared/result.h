@@ -13,6 +13,7 @@ enum class ErrorCode {
   tooLarge,     // beyond a stated limit
   unavailable,  // the source (disk, upstream) failed: retrying may help
   timedOut,     // the source did not answer in time
+  overloaded,   // this program is at one of its own limits: later it may work
 };
 
 struct Error {

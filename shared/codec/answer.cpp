@@ -7,14 +7,15 @@ namespace meshfront {
 
 Result<std::vector<RecordEntry>> parseAnswer(
     std::span<const uint8_t> bytes, std::span<const NodeId> wanted, const Expansion& expansion,
-    const CodeTables& tables,
-    const std::function<std::optional<unsigned>(const NodeId&)>& levelOf) {
+    const CodeTables& tables, const std::function<std::optional<unsigned>(const NodeId&)>& levelOf,
+    size_t maxEntries) {
   const auto content = checkedContent(bytes, "answer");
   if (!content) return tl::unexpected(content.error());
   BitReader in(*content);
   std::vector<RecordEntry> entries;
   // A record is free of charge only in degenerate tables; this bounds the entries by the bytes.
-  const uint64_t limit = in.left() + wanted.size() + 1;
+  uint64_t limit = in.left() + wanted.size() + 1;
+  if (maxEntries < limit) limit = uint64_t{maxEntries} + 1;
   const auto descend = [&](unsigned generation, unsigned level) {
     return expansion.significance ? level <= *expansion.significance
                                   : generation <= expansion.levels;
@@ -25,7 +26,8 @@ Result<std::vector<RecordEntry>> parseAnswer(
     if (entries.size() >= limit || !readSubtree(in, tables, node, *level, descend, limit, entries))
       return fail("answer: fewer records than asked for, or damaged ones");
   }
-  if (entries.size() >= limit) return fail("answer: more records than its bytes can hold");
+  if (entries.size() >= limit)
+    return fail("answer: more records than its bytes, or limits, can hold");
   if (in.left() >= 8 || in.read(static_cast<unsigned>(in.left())) != 0)
     return fail("answer: bits behind the last record");
   return entries;

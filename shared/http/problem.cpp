@@ -75,6 +75,11 @@ HttpResponse problemFor(const Error& error) {
       return problem(502, "the service behind this proxy is not available; try again later");
     case ErrorCode::timedOut:
       return problem(504, "the service behind this proxy did not answer in time; try again later");
+    case ErrorCode::overloaded: {
+      HttpResponse response = problem(503, error.message);
+      response.set("Retry-After", "1");
+      return response;
+    }
     case ErrorCode::invalid:
       break;
   }

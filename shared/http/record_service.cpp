@@ -1,13 +1,12 @@
 #include "shared/http/record_service.h"
 
-#include <openssl/evp.h>
-
 #include <algorithm>
 #include <cstdio>
 
 #include "shared/bits/base64url.h"
 #include "shared/http/conditional_request.h"
 #include "shared/http/problem.h"
+#include "shared/store/entity_tag.h"
 
 namespace meshfront {
 namespace {
@@ -15,36 +14,6 @@ namespace {
 constexpr const char* kImmutable = "public, max-age=31536000, immutable, no-transform";
 constexpr const char* kShort = "public, max-age=10";
 constexpr const char* kBinary = "application/octet-stream";
-
-std::string hexOf(std::span<const uint8_t> bytes) {
-  constexpr std::string_view kDigits = "0123456789abcdef";
-  std::string text;
-  text.reserve(bytes.size() * 2);
-  for (const uint8_t byte : bytes) {
-    text.push_back(kDigits[byte >> 4]);
-    text.push_back(kDigits[byte & 15]);
-  }
-  return text;
-}
-
-std::string inQuotes(std::string_view text) {
-  std::string out(1, '"');
-  return out.append(text).append(1, '"');
-}
-
-// A strong tag of content that changes under its URL.
-std::string digestTag(std::span<const uint8_t> content) {
-  std::array<uint8_t, EVP_MAX_MD_SIZE> digest{};
-  EVP_Digest(content.data(), content.size(), digest.data(), nullptr, EVP_sha256(), nullptr);
-  return inQuotes(hexOf(std::span(digest).first(16)));
-}
-
-// A strong tag of an answer. Its URL fixes its content for ever; only the content of a QUERY can
-// make two answers differ, and those differ in checksum or length.
-std::string answerTag(std::span<const uint8_t> content) {
-  std::string tag = hexOf(content.last(std::min<size_t>(content.size(), 4)));
-  return inQuotes(tag.append("-").append(std::to_string(content.size())));
-}
 
 void setAge(HttpResponse& response, std::optional<std::chrono::seconds> age) {
   if (age) response.set("Age", std::to_string(std::max<int64_t>(age->count(), 0)));
@@ -66,7 +35,7 @@ HttpResponse describedResponse(Described described) {
   response.content = std::move(described.json);
   response.set("Content-Type", "application/json");
   response.set("Cache-Control", kShort);
-  response.set("ETag", digestTag(response.content.bytes()));
+  response.set("ETag", documentTag(response.content.bytes()));
   setAge(response, described.age);
   return response;
 }
@@ -201,16 +170,23 @@ Result<HttpResponse> RecordService::dispatch(const HttpRequest& request, const R
   if (route.kind == RouteKind::splits || route.kind == RouteKind::querySplits)
     return splits(request, route, store, waiting);
   Result<HeldBytes> content;
+  std::string resource = "base";
   if (route.kind == RouteKind::base) content = store.base(waiting);
-  if (route.kind == RouteKind::chunks) content = store.chunkIndex(waiting);
+  if (route.kind == RouteKind::chunks) {
+    resource = "chunks";
+    content = store.chunkIndex(waiting);
+  }
   if (route.kind == RouteKind::chunk) {
     const auto number = canonicalNumber(route.last);
     if (!number) return problem(400, "a chunk's number is a decimal number without leading zeros");
+    resource = "chunks/" + std::to_string(*number);
     content = store.chunk(*number, waiting);
     if (content) chunkBytes_.add(content->bytes().size());
   }
   if (!content) return tl::unexpected(content.error());
-  return immutableResponse(std::move(*content), inQuotes(route.revision), store.age());
+  return immutableResponse(std::move(*content),
+                           constantTag(route.revision, resourceKey(route.revision, resource)),
+                           store.age());
 }
 
 Result<HttpResponse> RecordService::splits(const HttpRequest& request, const Route& route,
@@ -238,7 +214,11 @@ Result<HttpResponse> RecordService::splits(const HttpRequest& request, const Rou
   ids_.add(set->wanted.size());
   records_.add(answer->records);
   recordBytes_.add(answer->bytes.size());
-  std::string etag = answerTag(answer->bytes);
+  std::vector<uint8_t> decoded;
+  if (!byQuery) decoded = *base64urlDecode(route.last);
+  const std::span<const uint8_t> bitstring = byQuery ? request.content : decoded;
+  std::string etag =
+      recordsTag(answer->bytes, recordsKey(route.revision, bitstring, set->expansion));
   HttpResponse response =
       immutableResponse(HeldBytes::of(std::move(answer->bytes)), std::move(etag), store.age());
   if (byQuery) {
@@ -261,7 +241,10 @@ HttpResponse RecordService::finish(HttpResponse response, const HttpRequest& req
     }
   }
   response.set("Access-Control-Allow-Origin", "*");
-  if (!options_.via.empty()) response.set("Via", options_.via);
+  if (!options_.via.empty()) {
+    const std::string before = options_.viaBefore ? options_.viaBefore() : std::string();
+    response.set("Via", before.empty() ? options_.via : before + ", " + options_.via);
+  }
   size_t status = 0;
   while (status + 1 < kStatuses.size() && kStatuses[status] != response.status) ++status;
   requests_[static_cast<unsigned>(route.kind)][status]->add();

@@ -7,6 +7,7 @@
 #pragma once
 
 #include <array>
+#include <functional>
 #include <string>
 
 #include "shared/http/catalogue.h"
@@ -25,6 +26,8 @@ class RecordService final : public HttpHandler {
     size_t maxContent = kMaxContentOctets;  // for the message; the server counts
     size_t maxLevels = kMaxDepth;           // of descendants
     std::string via{};                      // value of the Via field; empty at the origin
+    // What the Via fields of a proxy's own sources said, to stand in front of it; empty: nothing.
+    std::function<std::string()> viaBefore{};
   };
   // Catalogue and metrics must outlive the service.
   RecordService(Catalogue& catalogue, Metrics& metrics, Options options);

@@ -9,7 +9,7 @@
 //   + threads * 64 KiB                               what is being read
 //   + memoryInFlight                                 contents received, answers being sent
 //   + (threads + waitingThreads) * (3 * maxAnswer + 16 B * maxIds)    answers being put together
-//   + waitingThreads * 160 B * maxRecords            proxy: records fetched for these answers
+//   + --fetch-memory                                 proxy: records fetched for these answers
 //   + the budget of the index (service) or of the cache (proxy)
 //
 // because contents and answers are counted in memoryInFlight before they are kept or queued, and

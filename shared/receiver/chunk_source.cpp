@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "shared/receiver/ranking.h"
+#include "shared/store/entity_tag.h"
 
 namespace meshfront {
 namespace {
@@ -57,7 +58,8 @@ void ChunkSource::requestIndex(bool bypassCaches) {
   const uint64_t chunks = std::min(to_.chunkCount, kMaxIndexBytes / kIndexBytesPerChunk);
   request.maxBodyBytes = kIndexBytesBeside + chunks * kIndexBytesPerChunk;
   request.bypassCaches = bypassCaches;
-  indexRequest_ = to_.transport.send(std::move(request), chunkIndexInto(to_.inbox));
+  indexRequest_ = to_.transport.send(
+      std::move(request), chunkIndexInto(to_.inbox, resourceKey(to_.revision, "chunks")));
 }
 
 void ChunkSource::takeIndex(ChunkIndexArrival arrival) {
@@ -72,9 +74,8 @@ void ChunkSource::takeIndex(ChunkIndexArrival arrival) {
     ++to_.statistics.malformed;
     if (indexRejected_) {
       report(
-          {SourceTrouble::Kind::failed,
-           "the chunk index is damaged, and so is its repetition: " + arrival.index.error().message,
-           true});
+          {SourceTrouble::Kind::damaged, "the chunk index is damaged, and so is its repetition: " +
+                                             arrival.index.error().message});
       return;
     }
     indexRejected_ = true;
@@ -211,8 +212,9 @@ void ChunkSource::send(uint32_t chunk, bool bypassCaches) {
   request.url = to_.url.chunk(to_.revision, chunk);
   request.maxBodyBytes = kMaxChunkBytes;
   request.bypassCaches = bypassCaches;
+  const uint32_t key = resourceKey(to_.revision, "chunks/" + std::to_string(chunk));
   flight.id =
-      to_.transport.send(std::move(request), chunkInto(to_.inbox, flight.sequence, tables_));
+      to_.transport.send(std::move(request), chunkInto(to_.inbox, key, flight.sequence, tables_));
 }
 
 // --- answers -------------------------------------------------------------------------------------
@@ -349,9 +351,8 @@ void ChunkSource::reject(uint32_t chunk, const std::string& problem) {
   ++to_.statistics.malformed;
   held_.forget(chunk);
   if (rejected_[chunk] != 0) {
-    report({SourceTrouble::Kind::failed,
-            "chunk " + std::to_string(chunk) + " is damaged, and so is its repetition: " + problem,
-            true});
+    report({SourceTrouble::Kind::damaged, "chunk " + std::to_string(chunk) +
+                                              " is damaged, and so is its repetition: " + problem});
     return;
   }
   rejected_[chunk] = 1;
@@ -371,6 +372,8 @@ void ChunkSource::giveUp() {
   indexRequest_ = 0;
   for (const Flight& flight : flights_) underWay_[flight.chunk] = 0;
   flights_.clear();
+  std::fill(rejected_.begin(), rejected_.end(), uint8_t{0});
+  indexRejected_ = false;
   forgetPlans();
 }
 

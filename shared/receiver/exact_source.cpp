@@ -27,8 +27,8 @@ ExactSource::~ExactSource() {
 // --- requests ------------------------------------------------------------------------------------
 
 void ExactSource::send(Flight& flight, bool bypassCaches) {
-  size_t setOctets = 0;
-  Result<FetchRequest> http = toFetch(to_.url, to_.revision, *flight.request, &setOctets);
+  SpelledSet spelled;
+  Result<FetchRequest> http = toFetch(to_.url, to_.revision, *flight.request, &spelled);
   if (!http) {
     // Front nodes are an antichain: only a damaged mesh can get here.
     report({SourceTrouble::Kind::failed, "the request cannot be written: " + http.error().message,
@@ -38,9 +38,10 @@ void ExactSource::send(Flight& flight, bool bypassCaches) {
   http->bypassCaches = bypassCaches;
   ++to_.statistics.requests;
   to_.statistics.idsRequested += flight.nodes.size();
-  to_.statistics.setOctets += setOctets;
-  flight.id = to_.transport.send(std::move(*http),
-                                 recordsInto(to_.inbox, flight.sequence, flight.request, tables_));
+  to_.statistics.setOctets += spelled.octets;
+  flight.id = to_.transport.send(
+      std::move(*http),
+      recordsInto(to_.inbox, spelled.key, flight.sequence, flight.request, tables_));
 }
 
 uint64_t ExactSource::pendingRecords() const {
@@ -216,8 +217,8 @@ void ExactSource::refuseFirstFlight() {
 void ExactSource::rejectFirstFlight(const std::string& problem) {
   ++to_.statistics.malformed;
   if (++malformedInRow_ > 1) {
-    report({SourceTrouble::Kind::failed,
-            "an answer is damaged, and so is its repetition: " + problem, true});
+    report({SourceTrouble::Kind::damaged,
+            "an answer is damaged, and so is its repetition: " + problem});
     return;
   }
   Flight& flight = *flights_.front();
@@ -280,6 +281,7 @@ void ExactSource::giveUp() {
   queue_.clear();
   queueNext_ = 0;
   queueExpansion_.reset();
+  malformedInRow_ = 0;
 }
 
 bool ExactSource::isBusy(NodeIndex node) const {

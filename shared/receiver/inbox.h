@@ -65,14 +65,17 @@ class Inbox {
   std::function<void()> onArrival_;
 };
 
-// Completions that decode an answer and put it in.
+// Completions that decode an answer and put it in. `key`: of the resource asked for; an answer
+// whose entity tag names another one (entity_tag.h) is malformed.
 [[nodiscard]] Transport::Completion metadataInto(std::shared_ptr<Inbox> inbox);
-[[nodiscard]] Transport::Completion baseInto(std::shared_ptr<Inbox> inbox);
-[[nodiscard]] Transport::Completion recordsInto(std::shared_ptr<Inbox> inbox, uint64_t sequence,
+[[nodiscard]] Transport::Completion baseInto(std::shared_ptr<Inbox> inbox, uint32_t key);
+[[nodiscard]] Transport::Completion recordsInto(std::shared_ptr<Inbox> inbox, uint32_t key,
+                                                uint64_t sequence,
                                                 std::shared_ptr<const RecordRequest> request,
                                                 std::shared_ptr<const CodeTables> tables);
-[[nodiscard]] Transport::Completion chunkIndexInto(std::shared_ptr<Inbox> inbox);
-[[nodiscard]] Transport::Completion chunkInto(std::shared_ptr<Inbox> inbox, uint64_t sequence,
+[[nodiscard]] Transport::Completion chunkIndexInto(std::shared_ptr<Inbox> inbox, uint32_t key);
+[[nodiscard]] Transport::Completion chunkInto(std::shared_ptr<Inbox> inbox, uint32_t key,
+                                              uint64_t sequence,
                                               std::shared_ptr<const CodeTables> tables);
 
 }  // namespace meshfront

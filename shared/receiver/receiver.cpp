@@ -5,6 +5,7 @@
 
 #include "shared/receiver/inbox.h"
 #include "shared/receiver/problem_details.h"
+#include "shared/store/entity_tag.h"
 
 namespace meshfront {
 namespace {
@@ -66,7 +67,9 @@ void Receiver::requestBase() {
   FetchRequest request;
   request.url = url_.base(metadata_->revision);
   request.maxBodyBytes = static_cast<size_t>(std::min(metadata_->baseBytes, kMaxBaseBytes));
-  setupRequest_ = transport_.send(std::move(request), baseInto(inbox_));
+  request.bypassCaches = damagesInRow_ > 0;
+  setupRequest_ = transport_.send(std::move(request),
+                                  baseInto(inbox_, resourceKey(metadata_->revision, "base")));
 }
 
 bool Receiver::mayRequest() const {
@@ -114,7 +117,7 @@ bool Receiver::advance(size_t maxSplits) {
   const bool rankingFirst = options_.freshRanking && wantsRanking();
   if (source_ && state_ != ReceiverState::degraded && !rankingFirst) {
     finished = source_->apply(maxSplits);
-    if (finished) notFoundInRow_ = 0;
+    if (finished) notFoundInRow_ = damagesInRow_ = 0;
     meetTrouble();
   }
   requestRecords();
@@ -148,14 +151,14 @@ void Receiver::takeMetadata(MetadataArrival arrival) {
   } else if (response.status != 200) {
     degrade(url_.origin + " refuses the metadata: " + describeRefusal(response), false);
   } else if (!arrival.metadata) {
-    degrade(
-        url_.metadata() + " is no mesh of the v1 interface: " + arrival.metadata.error().message,
-        true);
+    degradeByDamage(url_.metadata() +
+                    " is no mesh of the v1 interface: " + arrival.metadata.error().message);
   } else if (mesh_ && metadata_->revision != arrival.metadata->revision) {
     degrade("the mesh was published anew: revision " + metadata_->revision + " is now " +
                 arrival.metadata->revision + "; connect again to see it",
             true);
   } else {
+    if (!metadata_) damagesInRow_ = 0;
     metadata_ = std::move(*arrival.metadata);
     if (!mesh_) requestBase();
   }
@@ -172,10 +175,10 @@ void Receiver::takeBase(BaseArrival arrival) {
     degrade(url_.origin + " refuses the base mesh: " + describeRefusal(response), false);
   } else if (!arrival.mesh) {
     ++statistics_.malformed;
-    degrade("the base mesh is damaged or of another version: " + arrival.mesh.error().message,
-            true);
+    degradeByDamage("the base mesh is damaged or of another version: " +
+                    arrival.mesh.error().message);
   } else {
-    notFoundInRow_ = 0;
+    notFoundInRow_ = damagesInRow_ = 0;
     mesh_ = std::make_unique<SelectivelyRefinedMesh>(std::move(*arrival.mesh));
     source_ = makeSource({url_, metadata_->revision, options_, transport_, inbox_, *mesh_,
                           statistics_, progress_, metadata_->chunkCount, metadata_->chunkBytes});
@@ -187,6 +190,8 @@ void Receiver::meetTrouble() {
   if (!trouble || state_ == ReceiverState::degraded) return;
   if (trouble->kind == SourceTrouble::Kind::revisionGone) {
     revisionNotFound();
+  } else if (trouble->kind == SourceTrouble::Kind::damaged) {
+    degradeByDamage(std::move(trouble->reason));
   } else {
     degrade(std::move(trouble->reason), trouble->final);
   }
@@ -230,6 +235,10 @@ void Receiver::degrade(std::string reason, bool final) {
   state_ = ReceiverState::degraded;
   reason_ = std::move(reason);
   final_ = final;
+}
+
+void Receiver::degradeByDamage(std::string reason) {
+  degrade(std::move(reason), ++damagesInRow_ >= kMostDamages);
 }
 
 bool Receiver::resume() {

@@ -83,8 +83,9 @@ class Receiver {
   // `pixels`: counts by vertex slot of mesh() as it is now. Sends what there is room for.
   void rank(std::span<const uint32_t> pixels);
 
-  // Leaves degraded where trying again may help (a server that was away); false where it cannot
-  // (the mesh was published anew, a server that sends damaged answers).
+  // Leaves degraded where trying again may help (a server that was away or sent damaged answers);
+  // false where it cannot (the mesh was published anew, kMostDamages in a row).
+  static constexpr unsigned kMostDamages = 12;
   bool resume();
 
  private:
@@ -100,6 +101,7 @@ class Receiver {
   void revisionNotFound();
   void updateState();
   void degrade(std::string reason, bool final);
+  void degradeByDamage(std::string reason);
 
   const MeshUrl url_;
   const ReceiverOptions options_;
@@ -117,6 +119,7 @@ class Receiver {
   FetchId setupRequest_ = 0;              // metadata or base under way
   bool awaitingMetadata_ = false;         // no records are asked for meanwhile
   unsigned notFoundInRow_ = 0;
+  unsigned damagesInRow_ = 0;  // since it last got further
 };
 
 }  // namespace meshfront

@@ -5,6 +5,7 @@
 
 #include "shared/bits/base64url.h"
 #include "shared/hierarchy/tree_bitstring.h"
+#include "shared/store/entity_tag.h"
 
 namespace meshfront {
 namespace {
@@ -22,10 +23,10 @@ std::string expansionParameter(const Expansion& expansion) {
 }
 
 Result<FetchRequest> toFetch(const MeshUrl& url, std::string_view revision,
-                             const RecordRequest& request, size_t* setOctets) {
+                             const RecordRequest& request, SpelledSet* spelled) {
   Result<std::vector<uint8_t>> bits = encodeTreeBitstring(request.nodes);
   if (!bits) return tl::unexpected(bits.error());
-  if (setOctets != nullptr) *setOctets = bits->size();
+  if (spelled != nullptr) *spelled = {bits->size(), recordsKey(revision, *bits, request.expansion)};
   const std::string parameter = expansionParameter(request.expansion);
   FetchRequest http;
   http.maxBodyBytes =

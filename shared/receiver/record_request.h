@@ -25,11 +25,15 @@ struct RecordRequest {
 // The URL's parameter, "" where the expansion adds nothing.
 [[nodiscard]] std::string expansionParameter(const Expansion& expansion);
 
-// GET while the URL stays within kMaxUrlOctets, else QUERY. Tells the octets of the set of IDs, as
-// a bitstring, in `setOctets` if given.
+struct SpelledSet {
+  size_t octets = 0;  // of the IDs, as a bitstring
+  uint32_t key = 0;   // in the entity tag of the answer (entity_tag.h)
+};
+
+// GET while the URL stays within kMaxUrlOctets, else QUERY. Tells of the set in `spelled` if given.
 [[nodiscard]] Result<FetchRequest> toFetch(const MeshUrl& url, std::string_view revision,
                                            const RecordRequest& request,
-                                           size_t* setOctets = nullptr);
+                                           SpelledSet* spelled = nullptr);
 
 // Untrusted answer.
 [[nodiscard]] Result<std::vector<RecordEntry>> parseRecords(std::span<const uint8_t> bytes,

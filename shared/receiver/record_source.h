@@ -47,6 +47,7 @@ struct SourceSurroundings {
 struct SourceTrouble {
   enum class Kind {
     revisionGone,  // the server has none of this revision
+    damaged,       // an answer twice in a row, or one to another request: may heal
     failed
   };
   Kind kind = Kind::failed;

@@ -3,6 +3,11 @@
 #include <algorithm>
 
 namespace meshfront {
+namespace {
+
+constexpr size_t kUnprovenShare = 10;  // of the limit, one in so many
+
+}  // namespace
 
 void MemoryBudget::join(Member* member) {
   const std::scoped_lock lock(mutex_);
@@ -32,14 +37,22 @@ void MemoryBudget::enforce() {
   const auto smaller = [](const Member* a, const Member* b) {
     return a->heldBytes() < b->heldBytes();
   };
-  for (size_t round = 0; round < members_.size(); ++round) {
+  const auto lessUnproven = [](const Member* a, const Member* b) {
+    return a->unprovenBytes() < b->unprovenBytes();
+  };
+  const auto mostGivingUp = [&]() -> Member& {
+    Member& unproven = **std::max_element(members_.begin(), members_.end(), lessUnproven);
+    if (unproven.unprovenBytes() > limit_ / kUnprovenShare) return unproven;
+    return **std::max_element(members_.begin(), members_.end(), smaller);
+  };
+  for (size_t round = 0; round < 2 * members_.size(); ++round) {
     const size_t used = bytesLocked();
     if (used <= limit_) return;
-    Member& largest = **std::max_element(members_.begin(), members_.end(), smaller);
-    const size_t before = largest.heldBytes();
-    largest.release(used - limit_ + spare);
+    Member& member = mostGivingUp();
+    const size_t before = member.heldBytes();
+    member.release(used - limit_ + spare);
     // Others may have added to it meanwhile.
-    const size_t after = largest.heldBytes();
+    const size_t after = member.heldBytes();
     if (after < before) releasedBytes_ += before - after;
   }
 }

@@ -22,6 +22,8 @@ class MemoryBudget {
     Member(const Member&) = delete;
     Member& operator=(const Member&) = delete;
     [[nodiscard]] virtual size_t heldBytes() const = 0;
+    // Of these, what nobody has asked for again: such goes first, whoever holds it.
+    [[nodiscard]] virtual size_t unprovenBytes() const { return 0; }
     // Gives up about `bytes`, or all it has.
     virtual void release(size_t bytes) = 0;
   };
@@ -32,7 +34,8 @@ class MemoryBudget {
   void join(Member* member);
   void leave(Member* member);
 
-  // Lets the largest members give up memory until all fit. Called after growth, so that the limit
+  // Lets the members give up memory until all fit: who holds most that is unproven, while that is
+  // much, else the largest. Called after growth, so that the limit
   // is exceeded in between by what each thread has just added.
   void enforce();
   [[nodiscard]] size_t bytes() const;

@@ -1,6 +1,7 @@
 // What a receiver makes of damage, refusals and absent servers.
 #include <set>
 
+#include "shared/store/entity_tag.h"
 #include "tests/unit/receiver_fixture.h"
 
 namespace meshfront {
@@ -41,9 +42,63 @@ TEST_F(ReceiverFaultsTest, GivesUpAfterTwoDamagedAnswers) {
   EXPECT_NE(receiver.reason().find("damaged"), std::string::npos) << receiver.reason();
   EXPECT_TRUE(transport_.held.empty());  // cancelled
   EXPECT_NE(receiver.mesh(), nullptr);
-  EXPECT_FALSE(receiver.resume());
   receiver.rank(everywhere(receiver));
   EXPECT_TRUE(transport_.held.empty());
+  // It may heal, but is not tried for ever.
+  for (unsigned i = 1; i < Receiver::kMostDamages; ++i) {
+    ASSERT_TRUE(receiver.resume()) << i;
+    for (int step = 0; step < 6 && receiver.state() != ReceiverState::degraded; ++step) {
+      if (receiver.wantsRanking()) receiver.rank(everywhere(receiver));
+      FetchResponse response = service_.answer(transport_.held.back().request);
+      if (transport_.held.back().request.url != url().metadata()) response.body.pop_back();
+      transport_.complete(transport_.held.size() - 1, response);
+      receiver.advance();
+    }
+    ASSERT_EQ(receiver.state(), ReceiverState::degraded) << i;
+  }
+  EXPECT_FALSE(receiver.resume());
+}
+
+TEST_F(ReceiverFaultsTest, GoesOnAfterDamageThatHeals) {
+  Receiver& receiver = start(batches(10, 2));
+  FetchResponse page;
+  page.status = 200;
+  page.body = {'<', 'h', 't', 'm', 'l', '>'};
+  const auto answerAll = [&](const std::optional<FetchResponse>& instead) {
+    for (int i = 0; i < 20 && receiver.isAtWork() && !transport_.held.empty(); ++i) {
+      FetchResponse response = service_.answer(transport_.held[0].request);
+      transport_.complete(0, instead ? *instead : response);
+      receiver.advance();
+      if (instead) break;
+    }
+  };
+  answerAll(page);  // the metadata
+  EXPECT_EQ(receiver.state(), ReceiverState::degraded);
+  ASSERT_TRUE(receiver.resume());
+  transport_.answer(service_);
+  receiver.advance();
+  answerAll(page);  // the base
+  EXPECT_EQ(receiver.state(), ReceiverState::degraded);
+  ASSERT_TRUE(receiver.resume());
+  transport_.answer(service_);
+  receiver.advance();
+  ASSERT_EQ(transport_.held.size(), 1U);
+  EXPECT_TRUE(transport_.held[0].request.bypassCaches);
+  runToTheEnd(receiver);
+  EXPECT_EQ(receiver.state(), ReceiverState::complete) << receiver.reason();
+}
+
+TEST_F(ReceiverFaultsTest, RefusesTheRecordsOfAnotherRequestByTheirTag) {
+  Receiver& receiver = connect(batches(10, 1));
+  receiver.rank(everywhere(receiver));
+  FetchResponse mixedUp = service_.answer(transport_.held[0].request);
+  mixedUp.headers["etag"] = recordsTag(mixedUp.body, 1);
+  transport_.complete(0, mixedUp);
+  receiver.advance();
+  EXPECT_EQ(receiver.statistics().malformed, 1U);
+  EXPECT_EQ(receiver.mesh()->splitsApplied(), 0U);
+  runToTheEnd(receiver);
+  EXPECT_EQ(receiver.state(), ReceiverState::complete) << receiver.reason();
 }
 
 TEST_F(ReceiverFaultsTest, RefusesAnswersWithMoreOrFewerRecords) {
