@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "shared/store/entity_tag.h"
 #include "shared/store/mesh_metadata.h"
 
 namespace meshfront {
@@ -12,8 +13,9 @@ std::string_view asText(std::span<const uint8_t> bytes) {
   return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
-bool isCatalogue(std::span<const uint8_t> bytes) {
-  const auto json = nlohmann::json::parse(asText(bytes), nullptr, false);
+bool isCatalogue(const UpstreamResponse& response) {
+  if (isTagOfOtherDocument(response.etag, response.content)) return false;
+  const auto json = nlohmann::json::parse(asText(response.content), nullptr, false);
   return json.is_object() && json.contains("meshes") && json["meshes"].is_array();
 }
 
@@ -29,9 +31,10 @@ Result<Described> CachedCatalogue::list(Waiting waiting) {
 }
 
 Result<Described> CachedCatalogue::describe(std::string_view mesh, Waiting waiting) {
-  const auto isOfMesh = [mesh](std::span<const uint8_t> bytes) {
-    const auto metadata = metadataFromJson(asText(bytes));
-    return metadata && metadata->name == mesh;
+  const auto isOfMesh = [name = std::string(mesh)](const UpstreamResponse& response) {
+    if (isTagOfOtherDocument(response.etag, response.content)) return false;
+    const auto metadata = metadataFromJson(asText(response.content));
+    return metadata && metadata->name == name;
   };
   return parts_.documents.get("/v1/meshes/" + std::string(mesh), RouteKind::mesh, waiting, isOfMesh)
       .map(describedBy);

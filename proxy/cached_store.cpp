@@ -1,6 +1,8 @@
 #include "proxy/cached_store.h"
 
 #include "shared/bits/crc32c.h"
+#include "shared/codec/chunk.h"
+#include "shared/store/entity_tag.h"
 #include "shared/store/request_walk.h"
 
 namespace meshfront {
@@ -10,19 +12,17 @@ std::string prefixOf(const std::string& mesh, const std::string& revision) {
   return "/v1/meshes/" + mesh + "/" + revision + "/";
 }
 
-// Base mesh, chunks and chunk index all end in a checksum.
-bool endsInChecksum(std::span<const uint8_t> bytes) {
-  return checkedContent(bytes, "document").has_value();
-}
-
 }  // namespace
 
 Result<std::shared_ptr<CachedStore>> CachedStore::open(const Parts& parts, const std::string& mesh,
                                                        const std::string& revision,
                                                        Waiting waiting) {
-  const auto document = parts.documents.get(
-      prefixOf(mesh, revision) + "base", RouteKind::base, waiting,
-      [](std::span<const uint8_t> bytes) { return decodeBaseMesh(bytes).has_value(); });
+  const auto document =
+      parts.documents.get(prefixOf(mesh, revision) + "base", RouteKind::base, waiting,
+                          [key = resourceKey(revision, "base")](const UpstreamResponse& response) {
+                            return !isTagOfOtherResource(response.etag, key) &&
+                                   decodeBaseMesh(response.content).has_value();
+                          });
   if (!document) return tl::unexpected(document.error());
   auto base = decodeBaseMesh(document->content.bytes());
   if (!base) return fail(ErrorCode::unavailable, "upstream: " + base.error().message);
@@ -34,11 +34,12 @@ CachedStore::CachedStore(const Parts& parts, const std::string& mesh, const std:
                          BaseMesh base, std::chrono::seconds age)
     : parts_(parts),
       prefix_(prefixOf(mesh, revision)),
+      revision_(revision),
       roots_(std::move(base.roots)),
-      tables_(std::move(base.tables)),
+      tables_(std::make_shared<const CodeTables>(std::move(base.tables))),
       opened_(std::chrono::steady_clock::now() - age),
       cache_(parts.budget),
-      fetcher_(parts.upstream, parts.counters, mesh, revision) {}
+      fetcher_(parts.upstream, parts.memory, parts.counters, mesh, revision) {}
 
 std::optional<std::chrono::seconds> CachedStore::age() const {
   return std::chrono::duration_cast<std::chrono::seconds>(std::chrono::steady_clock::now() -
@@ -47,7 +48,15 @@ std::optional<std::chrono::seconds> CachedStore::age() const {
 
 Result<HeldBytes> CachedStore::document(const std::string& resource, RouteKind kind,
                                         Waiting waiting) {
-  return parts_.documents.get(prefix_ + resource, kind, waiting, &endsInChecksum)
+  // By value: the check may be made later. The store's own tables die with it.
+  const auto isRight = [key = resourceKey(revision_, resource), kind,
+                        tables = tables_](const UpstreamResponse& response) {
+    if (isTagOfOtherResource(response.etag, key)) return false;
+    if (kind == RouteKind::base) return decodeBaseMesh(response.content).has_value();
+    if (kind == RouteKind::chunks) return decodeChunkIndex(response.content).has_value();
+    return decodeChunk(response.content, *tables).has_value();
+  };
+  return parts_.documents.get(prefix_ + resource, kind, waiting, isRight)
       .map([](const Document& document) { return document.content; });
 }
 
@@ -98,8 +107,9 @@ Result<Answer> CachedStore::collect(std::span<const NodeId> wanted, const Expans
     if (*cached) return std::move(**cached);
     return fail(ErrorCode::unavailable, "records have to be fetched");
   }
-  RecordGathering gathering(
-      {roots_, tables_, cache_, fetcher_, underWay_, parts_.budget, parts_.counters}, limits);
+  RecordGathering gathering({roots_, *tables_, cache_, fetcher_, underWay_, parts_.budget,
+                             parts_.memory, parts_.counters},
+                            limits);
   return gathering.collect(wanted, expansion);
 }
 

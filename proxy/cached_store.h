@@ -22,6 +22,7 @@ class CachedStore final : public RecordStore {
     Upstream& upstream;
     DocumentCache& documents;
     MemoryBudget& budget;
+    FetchMemory& memory;
     ProxyCounters& counters;
   };
   // Fetches and decodes the base mesh, which also tells whether the revision exists. All parts must
@@ -36,7 +37,7 @@ class CachedStore final : public RecordStore {
   [[nodiscard]] Result<HeldBytes> chunk(uint32_t number, Waiting waiting) override;
   [[nodiscard]] Result<Answer> collect(std::span<const NodeId> wanted, const Expansion& expansion,
                                        const CollectLimits& limits, Waiting waiting) override;
-  [[nodiscard]] Result<unsigned> maxLevel() override { return tables_.maxLevel; }
+  [[nodiscard]] Result<unsigned> maxLevel() override { return tables_->maxLevel; }
   // Since the first response of this revision: nothing held is older.
   [[nodiscard]] std::optional<std::chrono::seconds> age() const override;
 
@@ -52,8 +53,9 @@ class CachedStore final : public RecordStore {
 
   const Parts parts_;
   const std::string prefix_;  // "/v1/meshes/{mesh}/{revision}/"
+  const std::string revision_;
   const std::vector<BaseMesh::Root> roots_;
-  const CodeTables tables_;
+  const std::shared_ptr<const CodeTables> tables_;
   const std::chrono::steady_clock::time_point opened_;
   RecordCache cache_;
   RecordFetcher fetcher_;

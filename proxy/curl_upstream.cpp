@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <optional>
 
 namespace meshfront {
 namespace {
@@ -11,12 +12,29 @@ namespace {
 struct Reception {
   std::vector<uint8_t> content;
   size_t maxBytes = 0;
+  FetchMemory::Share memory;
+  std::optional<tl::unexpected<Error>> refusal;
+
+  [[nodiscard]] bool makeRoom(size_t bytes) {
+    if (bytes > maxBytes - content.size()) {
+      refusal = fail(ErrorCode::tooLarge, "upstream: more than was asked for");
+    } else if (content.size() + bytes > content.capacity()) {
+      const size_t room =
+          std::min(std::max(2 * content.capacity(), content.size() + bytes), maxBytes);
+      if (memory.take(room - content.capacity())) {
+        content.reserve(room);
+      } else {
+        refusal = noFetchMemory();
+      }
+    }
+    return !refusal;
+  }
 };
 
 size_t receive(char* data, size_t size, size_t count, void* context) {
   auto& reception = *static_cast<Reception*>(context);
   const size_t bytes = size * count;
-  if (bytes > reception.maxBytes - reception.content.size()) return 0;  // ends the transfer
+  if (!reception.makeRoom(bytes)) return 0;  // ends the transfer
   reception.content.insert(reception.content.end(), data, data + bytes);
   return bytes;
 }
@@ -84,12 +102,25 @@ void CurlUpstream::giveBack(std::unique_ptr<Handle> handle) {
   idle_.push_back(std::move(handle));
 }
 
+// It goes into answers of this proxy's own, so nothing but what such a field may hold.
+void CurlUpstream::noteVia(const std::string& via) {
+  constexpr size_t kMostOctets = 256;
+  const bool isPlain =
+      std::all_of(via.begin(), via.end(), [](char c) { return c >= ' ' && c <= '~'; });
+  const std::string value = isPlain && via.size() <= kMostOctets ? via : std::string();
+  const auto known = via_.load();
+  if ((known ? *known : std::string()) != value)
+    via_.store(std::make_shared<const std::string>(value));
+}
+
 Result<UpstreamResponse> CurlUpstream::send(const UpstreamRequest& request) {
   if (stopping_) return fail(ErrorCode::unavailable, "the proxy is ending");
   auto handle = take();
   CURL* curl = handle->curl;
   if (curl == nullptr) return fail(ErrorCode::unavailable, "libcurl gave no handle");
-  Reception reception{{}, request.maxBytes};
+  Reception reception;
+  reception.maxBytes = request.maxBytes;
+  if (request.memory != nullptr) reception.memory = request.memory->share();
   const std::string url = options_.url + request.target;
   curl_easy_setopt(curl, CURLOPT_URL, url.c_str());
   curl_easy_setopt(curl, CURLOPT_PROTOCOLS_STR, "http,https");
@@ -122,6 +153,7 @@ Result<UpstreamResponse> CurlUpstream::send(const UpstreamRequest& request) {
   const CURLcode status = curl_easy_perform(curl);
   if (status != CURLE_OK) {
     giveBack(std::move(handle));
+    if (reception.refusal) return *reception.refusal;
     const ErrorCode code =
         status == CURLE_OPERATION_TIMEDOUT ? ErrorCode::timedOut : ErrorCode::unavailable;
     return fail(code, std::string("upstream: ") + curl_easy_strerror(status));
@@ -132,9 +164,10 @@ Result<UpstreamResponse> CurlUpstream::send(const UpstreamRequest& request) {
   response.status = static_cast<unsigned>(httpStatus);
   response.etag = fieldOf(curl, "ETag");
   response.cacheControl = fieldOf(curl, "Cache-Control");
-  response.age = std::chrono::seconds(
-      std::clamp(std::atol(fieldOf(curl, "Age").c_str()), 0L, long{INT32_MAX}));
+  noteVia(fieldOf(curl, "Via"));
+  response.age = ageOf(fieldOf(curl, "Age"));
   response.content = std::move(reception.content);
+  response.memory = std::move(reception.memory);
   giveBack(std::move(handle));
   return response;
 }

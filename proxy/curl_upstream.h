@@ -25,6 +25,12 @@ class CurlUpstream final : public Upstream {
   ~CurlUpstream() override;
 
   [[nodiscard]] Result<UpstreamResponse> send(const UpstreamRequest& request) override;
+  // The Via field of the last response: which proxies stand in front of the origin. Empty: none, or
+  // one that is no list of plain words.
+  [[nodiscard]] std::string via() const {
+    const auto via = via_.load();
+    return via ? *via : std::string();
+  }
   // Requests under way fail soon, later ones at once.
   void stop() { stopping_ = true; }
 
@@ -35,7 +41,9 @@ class CurlUpstream final : public Upstream {
   void giveBack(std::unique_ptr<Handle> handle);
 
   const Options options_;
+  void noteVia(const std::string& via);
   std::atomic<bool> stopping_{false};
+  std::atomic<std::shared_ptr<const std::string>> via_;
   std::mutex mutex_;
   std::vector<std::unique_ptr<Handle>> idle_;  // each with its open connection
 };

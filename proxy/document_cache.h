@@ -1,19 +1,28 @@
 // Whole responses by URL: catalogue, metadata, base meshes, chunk indexes, chunks, and that
 // something does not exist. Obeys Cache-Control (RFC 9111): fresh ones are answered, older ones
-// revalidated, and kept on when the upstream is away. A URL being fetched is fetched once.
+// revalidated. A URL being fetched is fetched once. Which ones go when memory lacks: S3Fifo.
 //
-// Locking: mutex_ guards the entries and the fetches under way; nothing is sent while it is held.
+// While the upstream is away, old content is answered as it is (RFC 9111 section 4.2.4, RFC 5861:
+// stale-if-error), with its Age. It is refreshed by a thread of the cache's own; the first request
+// that finds it old waits for that, but only shortly, and once an attempt has failed none waits:
+// the refreshing goes on behind the answers, one attempt for all every few seconds.
+//
+// Locking: mutex_ guards the entries, the fetches under way and the queue of the refreshing thread;
+// nothing is sent while it is held.
 #pragma once
 
 #include <chrono>
+#include <condition_variable>
+#include <deque>
 #include <functional>
 #include <future>
-#include <list>
 #include <mutex>
 #include <string>
+#include <thread>
 #include <unordered_map>
 
 #include "proxy/proxy_counters.h"
+#include "proxy/s3_fifo.h"
 #include "proxy/upstream.h"
 #include "shared/store/held_bytes.h"
 #include "shared/store/memory_budget.h"
@@ -29,15 +38,21 @@ struct Document {
 class DocumentCache final : private MemoryBudget::Member {
  public:
   using Clock = std::chrono::steady_clock;
-  // Whether the content is what its URL promises; asked before anything is kept or answered.
-  using Check = std::function<bool(std::span<const uint8_t>)>;
+  // Whether the content is what its URL promises; asked before anything is kept or answered, also
+  // later and on another thread.
+  using Check = std::function<bool(const UpstreamResponse&)>;
+  struct Options {
+    std::chrono::milliseconds refreshWait{300};  // what a request for old content waits at most
+    std::chrono::seconds refreshPause{2};        // from a failed attempt to the next
+    std::function<Clock::time_point()> now = Clock::now;  // lets tests move time
+  };
 
-  // All references must outlive the cache. `now` lets tests move time.
-  DocumentCache(Upstream& upstream, MemoryBudget& budget, ProxyCounters& counters,
-                std::function<Clock::time_point()> now = Clock::now);
+  // All references must outlive the cache; the upstream is to fail soon when the cache ends.
+  DocumentCache(Upstream& upstream, MemoryBudget& budget, FetchMemory& memory,
+                ProxyCounters& counters, Options options);
   ~DocumentCache() override;
 
-  // Errors: notFound as the upstream said; unavailable, timedOut.
+  // Errors: notFound as the upstream said; unavailable, timedOut, overloaded.
   [[nodiscard]] Result<Document> get(const std::string& target, RouteKind kind, Waiting waiting,
                                      const Check& check);
   [[nodiscard]] size_t bytes() const { return bytes_.load(); }
@@ -50,33 +65,54 @@ class DocumentCache final : private MemoryBudget::Member {
     std::chrono::seconds ageReceived{0};
     std::chrono::seconds lifetime{0};
     Clock::time_point received;
-    std::list<std::string>::iterator order;  // in recent_
+    bool refreshFails = false;
+    Clock::time_point refreshNext{};  // not before
+    S3Fifo::Place place;
   };
   using Fetch = std::shared_future<Result<Document>>;
+  struct Job {
+    std::string target;
+    RouteKind kind{};
+    Check check;
+    std::string etag;
+    std::promise<Result<Document>> promise;
+  };
 
   [[nodiscard]] Document documentOf(const Entry& entry) const;
   [[nodiscard]] bool isFresh(const Entry& entry) const;
-  [[nodiscard]] Result<Document> fetch(const std::string& target, RouteKind kind,
-                                       const Check& check, const std::string& etag);
-  [[nodiscard]] Result<UpstreamResponse> sendChecked(const std::string& target, RouteKind kind,
-                                                     const Check& check, const std::string& etag);
+  // Old content: revalidated if that is quick. Takes the lock and gives it up.
+  [[nodiscard]] Result<Document> getOld(std::unique_lock<std::mutex> lock,
+                                        const std::string& target, RouteKind kind, Waiting waiting,
+                                        const Check& check);
+  [[nodiscard]] Job jobLocked(const std::string& target, RouteKind kind, const Check& check);
+  void perform(Job& job);
+  void refresh();  // the thread
+  [[nodiscard]] Result<UpstreamResponse> sendChecked(const Job& job);
   Result<Document> keep(const std::string& target, UpstreamResponse response);
   [[nodiscard]] Result<Document> staleOr(const std::string& target, const Error& error);
 
   void removeLocked(const std::string& target);
   [[nodiscard]] size_t heldBytes() const override { return bytes_.load(); }
+  [[nodiscard]] size_t unprovenBytes() const override { return unproven_.load(); }
   void release(size_t bytes) override;
+  void countLocked();
 
   Upstream& upstream_;
   MemoryBudget& budget_;
+  FetchMemory& memory_;
   ProxyCounters& counters_;
-  const std::function<Clock::time_point()> now_;
+  const Options options_;
 
   std::mutex mutex_;
+  std::condition_variable changed_;  // jobs_, ending_
   std::unordered_map<std::string, Entry> entries_;
-  std::list<std::string> recent_;  // most recently used first
+  S3Fifo order_;
   std::unordered_map<std::string, Fetch> fetches_;
+  std::deque<Job> jobs_;
+  bool ending_ = false;
   std::atomic<size_t> bytes_{0};
+  std::atomic<size_t> unproven_{0};
+  std::thread refresher_;  // last: starts when everything else is there
 };
 
 // max-age of a Cache-Control field; zero where there is none or nothing may be kept.

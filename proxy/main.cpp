@@ -23,6 +23,7 @@ struct Options {
   ServerOptions server{.listen = "127.0.0.1:8081"};
   std::string upstream;
   uint64_t cacheSize = uint64_t{256} << 20;
+  uint64_t fetchMemory = uint64_t{512} << 20;
   unsigned waitingThreads = 64;
   double patience = 5;
   double timeout = 30;
@@ -36,6 +37,11 @@ std::optional<int> parse(int argc, char** argv, Options& options) {
                  "memory for records, chunks, base meshes and metadata, for example 256MiB")
       ->transform(CLI::AsSizeValue(false))
       ->default_str("256MiB");
+  app.add_option("--fetch-memory", options.fetchMemory,
+                 "memory for answers of the upstream until they are put together; a request beyond "
+                 "it gets 503")
+      ->transform(CLI::AsSizeValue(false))
+      ->default_str("512MiB");
   app.add_option("--waiting-threads", options.waitingThreads,
                  "requests that may wait for the upstream at a time")
       ->check(CLI::Range(1U, 1024U))
@@ -73,9 +79,15 @@ int serve(const Options& options) {
   metrics.countedElsewhere("meshfront_cache_evicted_bytes_total",
                            "Bytes of cached records and documents given up for others.",
                            [&] { return budget.releasedBytes(); });
-  DocumentCache documents(upstream, budget, counters);
-  CachedCatalogue catalogue({upstream, documents, budget, counters});
-  RecordService service(catalogue, metrics, serviceOptions(options.server.limits, kVia));
+  FetchMemory memory(options.fetchMemory);
+  metrics.gauge("meshfront_fetch_memory_bytes",
+                "Memory that answers of the upstream take until they are put together.",
+                [&] { return memory.bytes(); });
+  DocumentCache documents(upstream, budget, memory, counters, {});
+  CachedCatalogue catalogue({upstream, documents, budget, memory, counters});
+  RecordService::Options serving = serviceOptions(options.server.limits, kVia);
+  serving.viaBefore = [&] { return (*connection)->via(); };
+  RecordService service(catalogue, metrics, std::move(serving));
   return runServer({.handler = service,
                     .metrics = metrics,
                     .options = options.server,

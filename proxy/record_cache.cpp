@@ -62,6 +62,7 @@ void RecordCache::insert(const RecordEntry& entry, std::span<const uint8_t> sour
     shard.outside += count;
   }
   shard.table.insert(entry.id, record);
+  ++entries_;
   bytes_ += shard.bytes() - before;
 }
 
@@ -78,8 +79,9 @@ std::optional<ChildFacts> RecordCache::Reader::find(const NodeId& node, BitWrite
   const std::atomic_ref<uint32_t> packed(found->packed);
   const CachedRecord copy{packed.load(std::memory_order_relaxed), found->bits};
   const CachedRecord* record = &copy;
-  if (!record->wasUsed()) packed.fetch_or(1, std::memory_order_relaxed);
   if (out != nullptr) {
+    const uint32_t use = record->nextUse();
+    if (use != 0) packed.fetch_or(use, std::memory_order_relaxed);
     const uint32_t length = record->length();
     if (record->isInline()) {
       if (length > 32) {
@@ -95,6 +97,14 @@ std::optional<ChildFacts> RecordCache::Reader::find(const NodeId& node, BitWrite
   return record->children();
 }
 
+size_t RecordCache::unprovenBytes() const {
+  const size_t entries = entries_;
+  if (entries == 0) return 0;
+  const size_t unproven = entries - std::min(entries, proven_.load());
+  return static_cast<size_t>(static_cast<double>(bytes_) * static_cast<double>(unproven) /
+                             static_cast<double>(entries));
+}
+
 void RecordCache::release(size_t bytes) {
   const size_t total = bytes_;
   if (total == 0) return;
@@ -102,11 +112,15 @@ void RecordCache::release(size_t bytes) {
     const std::unique_lock lock(shard.mutex);
     const size_t before = shard.bytes();
     const double part = std::min(1.0, static_cast<double>(bytes) / static_cast<double>(total));
+    const size_t entries = shard.table.size();
+    const size_t proven = shard.eviction.provenCount();
     const auto goal = static_cast<size_t>(static_cast<double>(before) * (1 - part));
     shard.eviction.evict(
         shard.table, [&] { return shard.bytes() <= goal; },
         [&](const CachedRecord& record) { release(shard, record); });
     bytes_ -= before - shard.bytes();
+    entries_ -= entries - shard.table.size();
+    proven_ += shard.eviction.provenCount() - proven;  // may wrap: the sum is right
   }
 }
 

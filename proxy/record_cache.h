@@ -12,7 +12,7 @@
 #include <shared_mutex>
 #include <span>
 
-#include "proxy/clock_eviction.h"
+#include "proxy/segmented_clock.h"
 #include "shared/bits/bit_writer.h"
 #include "shared/codec/chunk.h"
 #include "shared/store/memory_budget.h"
@@ -24,7 +24,7 @@ namespace meshfront {
 class RecordCache final : private MemoryBudget::Member {
   // 0 .. 64 bits stand in `bits`, left-aligned; longer records in an allocation of their own.
   struct CachedRecord {
-    uint32_t packed = 0;  // length (14), leaf flags (2), children's levels (5 each), used (1)
+    uint32_t packed = 0;  // length (14), leaf flags (2), children's levels (5 each), marks
     alignas(4) std::array<uint32_t, 2> bits{};
 
     [[nodiscard]] uint32_t length() const { return packed >> 18; }
@@ -32,15 +32,23 @@ class RecordCache final : private MemoryBudget::Member {
       return {(packed >> 17 & 1) != 0, (packed >> 16 & 1) != 0,
               static_cast<uint8_t>(packed >> 11 & 31), static_cast<uint8_t>(packed >> 6 & 31)};
     }
-    [[nodiscard]] bool wasUsed() const { return (packed & 1) != 0; }
-    void clearUsed() { packed &= ~1U; }
+    // Marks: a bit for each of the first two uses, so that they can be set without a count, and one
+    // for proven (SegmentedClock).
+    static constexpr uint32_t kFirstUse = 1;
+    static constexpr uint32_t kSecondUse = 2;
+    static constexpr uint32_t kProven = 4;
+    [[nodiscard]] bool wasUsed() const { return (packed & kFirstUse) != 0; }
+    [[nodiscard]] uint32_t nextUse() const { return !wasUsed() ? kFirstUse : ~packed & kSecondUse; }
+    void takeUse() { packed &= (packed & kSecondUse) != 0 ? ~kSecondUse : ~kFirstUse; }
+    [[nodiscard]] bool isProven() const { return (packed & kProven) != 0; }
+    void prove() { packed = (packed & ~(kFirstUse | kSecondUse)) | kProven; }
     [[nodiscard]] bool isInline() const { return length() <= 64; }
   };
   static constexpr size_t kShards = 32;
   struct Shard {
     std::shared_mutex mutex;
     NodeTable<CachedRecord> table;
-    ClockEviction eviction;
+    SegmentedClock eviction;
     size_t outside = 0;  // bytes of the records' own allocations
     [[nodiscard]] size_t bytes() const { return table.bytes() + outside; }
   };
@@ -59,7 +67,8 @@ class RecordCache final : private MemoryBudget::Member {
   class Reader {
    public:
     explicit Reader(RecordCache& cache) : cache_(cache) {}
-    // What the record tells of the children; its bits are appended to `out` unless that is null.
+    // What the record tells of the children; its bits are appended to `out`, which counts as a use,
+    // unless that is null.
     [[nodiscard]] std::optional<ChildFacts> find(const NodeId& node, BitWriter* out);
 
    private:
@@ -76,11 +85,14 @@ class RecordCache final : private MemoryBudget::Member {
   static void release(Shard& shard, const CachedRecord& record);
 
   [[nodiscard]] size_t heldBytes() const override { return bytes_.load(); }
+  [[nodiscard]] size_t unprovenBytes() const override;
   void release(size_t bytes) override;
 
   MemoryBudget& budget_;
   std::array<Shard, kShards> shards_;
   std::atomic<size_t> bytes_{0};
+  std::atomic<size_t> entries_{0};
+  std::atomic<size_t> proven_{0};  // of the entries, as of the last release
 };
 
 }  // namespace meshfront

@@ -9,9 +9,15 @@ namespace {
 
 constexpr unsigned kMaxRounds = 4 * kMaxDepth;  // more of them only if the cache forgets at once
 constexpr size_t kMaxBatch = 32768;             // nodes; any set of them fits into a QUERY
+// Of a need and of its copies in a batch and among the fetches under way.
+constexpr size_t kNeedBytes = 256;
 
 tl::unexpected<Error> noSuchNode() {
   return fail(ErrorCode::notFound, "no such node, or a leaf, which has no record");
+}
+
+bool isTransient(const Error& error) {
+  return isAway(error) || error.code == ErrorCode::overloaded;
 }
 
 bool sameExpansion(const Expansion& a, const Expansion& b) {
@@ -23,8 +29,9 @@ bool sameExpansion(const Expansion& a, const Expansion& b) {
 Result<Answer> RecordGathering::collect(std::span<const NodeId> wanted,
                                         const Expansion& expansion) {
   for (unsigned round = 0; round < kMaxRounds; ++round) {
+    FetchMemory::Share memory = context_.memory.share();
     Needs needs;
-    if (auto walked = walk(wanted, expansion, needs); !walked)
+    if (auto walked = walk(wanted, expansion, needs, memory); !walked)
       return tl::unexpected(walked.error());
     if (needs.empty()) {
       context_.counters.recordHits.add(records_ - missed_);
@@ -42,18 +49,19 @@ Result<Answer> RecordGathering::collect(std::span<const NodeId> wanted,
 
 std::optional<ChildFacts> RecordGathering::find(const NodeId& node, Reader& reader,
                                                 BitWriter* out) {
-  const auto it = held_.find(node);
-  if (it == held_.end()) return reader.find(node, out);
-  const Held& held = it->second;
+  const Held* held = held_.find(node);
+  if (held == nullptr) return reader.find(node, out);
+  const FetchedRecords& records = *fetched_[held->fetch];
+  const RecordEntry& entry = records.entries[held->entry];
   if (out != nullptr) {
-    out->append(held.records->bytes, held.bitOffset, held.bitLength);
+    out->append(records.bytes, entry.bitOffset, entry.bitLength);
     ++missed_;
   }
-  return held.children;
+  return ChildFacts{entry.leftIsLeaf, entry.rightIsLeaf, entry.leftLevel, entry.rightLevel};
 }
 
 Result<void> RecordGathering::walk(std::span<const NodeId> wanted, const Expansion& expansion,
-                                   Needs& needs) {
+                                   Needs& needs, FetchMemory::Share& memory) {
   out_.clear();
   records_ = missed_ = 0;
   Reader reader(context_.cache);
@@ -63,7 +71,7 @@ Result<void> RecordGathering::walk(std::span<const NodeId> wanted, const Expansi
       [&](const NodeId& node, const Expansion& rest) -> std::optional<ChildFacts> {
         const auto facts = find(node, reader, &out_);
         if (!facts) {
-          status = note(node, rest, reader, needs);
+          status = note(node, rest, reader, needs, memory);
         } else if (++records_ > limits_.maxRecords || out_.bitCount() / 8 > limits_.maxBytes) {
           status = fail(ErrorCode::tooLarge, "the answer would be too large; ask for fewer nodes");
         }
@@ -74,7 +82,8 @@ Result<void> RecordGathering::walk(std::span<const NodeId> wanted, const Expansi
 }
 
 Result<void> RecordGathering::note(const NodeId& node, const Expansion& rest, Reader& reader,
-                                   Needs& needs) {
+                                   Needs& needs, FetchMemory::Share& memory) {
+  if (!memory.take(kNeedBytes)) return noFetchMemory();
   NodeId top = node;
   while (true) {
     Need need{top == node ? rest : Expansion{}, 0};
@@ -104,8 +113,8 @@ Result<void> RecordGathering::obtain(const Needs& needs) {
     // After a failure the rest is settled too: others may be waiting for it.
     Result<SharedRecords> records =
         status ? fetch(batch, needs) : Result<SharedRecords>(tl::unexpected(status.error()));
-    if (records) {
-      hold(*records);
+    if (records && status) {
+      status = hold(*records);
     } else if (status) {
       status = tl::unexpected(records.error());
     }
@@ -115,9 +124,10 @@ Result<void> RecordGathering::obtain(const Needs& needs) {
   context_.counters.sharedFetches.add(others.size());
   for (const auto& other : others) {
     const Result<SharedRecords>& records = other->get();
-    if (records) hold(*records);
+    if (records) status = hold(*records);
     // Another error may concern the other request alone: the next round asks for itself.
-    if (!records && isAway(records.error())) return tl::unexpected(records.error());
+    if (!records && isTransient(records.error())) status = tl::unexpected(records.error());
+    if (!status) return status;
   }
   return {};
 }
@@ -151,12 +161,14 @@ std::vector<RecordGathering::Batch> RecordGathering::claim(
 }
 
 Result<SharedRecords> RecordGathering::fetch(const Batch& batch, const Needs& needs) {
-  return context_.fetcher.fetch(batch.nodes, batch.expansion, context_.tables,
-                                [&](const NodeId& node) -> std::optional<unsigned> {
-                                  const auto it = needs.find(node);
-                                  if (it == needs.end()) return std::nullopt;
-                                  return it->second.level;
-                                });
+  return context_.fetcher.fetch(
+      batch.nodes, batch.expansion, context_.tables,
+      [&](const NodeId& node) -> std::optional<unsigned> {
+        const auto it = needs.find(node);
+        if (it == needs.end()) return std::nullopt;
+        return it->second.level;
+      },
+      limits_);
 }
 
 void RecordGathering::settle(Batch& batch, const Result<SharedRecords>& records) {
@@ -172,13 +184,15 @@ void RecordGathering::settle(Batch& batch, const Result<SharedRecords>& records)
   batch.promise.set_value(records);
 }
 
-void RecordGathering::hold(const SharedRecords& records) {
-  for (const RecordEntry& entry : records->entries)
-    held_.try_emplace(entry.id,
-                      Held{{entry.leftIsLeaf, entry.rightIsLeaf, entry.leftLevel, entry.rightLevel},
-                           records,
-                           entry.bitOffset,
-                           entry.bitLength});
+Result<void> RecordGathering::hold(const SharedRecords& records) {
+  // Twice, because the table is copied when it grows.
+  if (!memory_.take(records->entries.size() * 2 * NodeTable<Held>::kBytesPerEntry))
+    return noFetchMemory();
+  const auto fetch = static_cast<uint32_t>(fetched_.size());
+  fetched_.push_back(records);
+  for (uint32_t i = 0; i < records->entries.size(); ++i)
+    held_.insert(records->entries[i].id, Held{fetch, i});
+  return {};
 }
 
 }  // namespace meshfront

@@ -7,7 +7,8 @@
 // for each different rest of the expansion; nodes that another request is fetching are awaited
 // instead. Normally the parents of the wanted nodes are cached and one round with one request does;
 // after a restart there is a round for each generation that lacks. What a round fetched is held
-// here until the answer is done, so that eviction cannot undo it.
+// here until the answer is done, so that eviction cannot undo it; FetchMemory bounds what all
+// gatherings hold so.
 #pragma once
 
 #include <future>
@@ -17,6 +18,7 @@
 #include <unordered_map>
 #include <vector>
 
+#include "proxy/fetch_memory.h"
 #include "proxy/record_cache.h"
 #include "proxy/record_fetcher.h"
 #include "shared/codec/base_mesh.h"
@@ -44,11 +46,12 @@ class RecordGathering {
     RecordFetcher& fetcher;
     FetchesUnderWay& underWay;
     MemoryBudget& budget;
+    FetchMemory& memory;
     ProxyCounters& counters;
   };
   // Everything in `context` must outlive the gathering.
   RecordGathering(const Context& context, const CollectLimits& limits)
-      : context_(context), limits_(limits) {}
+      : context_(context), limits_(limits), memory_(context.memory.share()) {}
 
   // May wait.
   [[nodiscard]] Result<Answer> collect(std::span<const NodeId> wanted, const Expansion& expansion);
@@ -64,30 +67,30 @@ class RecordGathering {
     std::vector<NodeId> nodes;  // an antichain in preorder
     std::promise<Result<SharedRecords>> promise;
   };
-  struct Held {
-    ChildFacts children;
-    SharedRecords records;
-    uint64_t bitOffset = 0;
-    uint32_t bitLength = 0;
+  struct Held {  // entry `entry` of fetched_[fetch]
+    uint32_t fetch = 0;
+    uint32_t entry = 0;
   };
   using Reader = RecordCache::Reader;
 
   [[nodiscard]] Result<void> walk(std::span<const NodeId> wanted, const Expansion& expansion,
-                                  Needs& needs);
+                                  Needs& needs, FetchMemory::Share& memory);
   [[nodiscard]] std::optional<ChildFacts> find(const NodeId& node, Reader& reader, BitWriter* out);
   [[nodiscard]] Result<void> note(const NodeId& node, const Expansion& rest, Reader& reader,
-                                  Needs& needs);
+                                  Needs& needs, FetchMemory::Share& memory);
   [[nodiscard]] Result<void> obtain(const Needs& needs);
   // Enters what nobody fetches yet, as batches; adds the fetches of others to wait for.
   [[nodiscard]] std::vector<Batch> claim(const Needs& needs,
                                          std::set<FetchesUnderWay::Fetch>& others);
   [[nodiscard]] Result<SharedRecords> fetch(const Batch& batch, const Needs& needs);
   void settle(Batch& batch, const Result<SharedRecords>& records);
-  void hold(const SharedRecords& records);
+  [[nodiscard]] Result<void> hold(const SharedRecords& records);
 
   const Context context_;
   const CollectLimits& limits_;
-  std::unordered_map<NodeId, Held, NodeIdHash> held_;
+  FetchMemory::Share memory_;  // for held_
+  std::vector<SharedRecords> fetched_;
+  NodeTable<Held> held_;
   BitWriter out_;
   uint64_t records_ = 0;
   uint64_t missed_ = 0;  // of these, not from the cache

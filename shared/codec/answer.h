@@ -25,7 +25,8 @@ struct Expansion {
 
 // Walks an answer. Parents come before children, so that each node's level is known when its record
 // is met: for nodes of `wanted` from `levelOf` (nullopt = unknown, an error), below them from the
-// records. Untrusted: more than `maxEntries` are an error too. Entries' offsets are into `bytes`.
+// records. Untrusted; beyond `maxEntries` ErrorCode::tooLarge. Offsets of entries are into
+// `bytes`.
 [[nodiscard]] Result<std::vector<RecordEntry>> parseAnswer(
     std::span<const uint8_t> bytes, std::span<const NodeId> wanted, const Expansion& expansion,
     const CodeTables& tables, const std::function<std::optional<unsigned>(const NodeId&)>& levelOf,

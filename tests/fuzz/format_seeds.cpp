@@ -213,6 +213,8 @@ std::vector<Seed> formatSeeds() {
   seeds.push_back({"metadata", "odd-nesting", std::string(3000, '[')});
   seeds.push_back({"metadata", "odd-types",
                    R"({"name":1,"revision":[],"vertexCount":-1,"quantization":{"step":1e999}})"});
+  const std::vector<Seed> ofUpstreams = upstreamSeeds(json);
+  seeds.insert(seeds.end(), ofUpstreams.begin(), ofUpstreams.end());
   addRequests(seeds, innerRoots(sheet.base()));
   return seeds;
 }

@@ -40,6 +40,9 @@ bool refineMesh(Bytes input);
 // Entries: which (0 metadata, 1 base, 2 chunk index, 3 report, 4 .. chunks), length (2 bytes,
 // little-endian), content.
 bool readPack(Bytes input);
+// What the proxy makes of its upstream. Answers: status and whether a checksum or a base is added,
+// ETag, Cache-Control and Age, a line each, length (2 bytes, little-endian), content.
+bool readUpstream(Bytes input);
 
 struct Target {
   std::string_view name;  // of its folder of seeds; its program is fuzz-NAME
@@ -54,6 +57,7 @@ inline constexpr std::array kTargets{
     Target{"answer", readAnswer},         Target{"base", readBase},
     Target{"chunk", readChunk},           Target{"chunk-index", readChunkIndex},
     Target{"refine", refineMesh},         Target{"pack", readPack},
+    Target{"upstream", readUpstream},
 };
 
 }  // namespace meshfront::fuzz

@@ -16,6 +16,8 @@ struct Seed {
 [[nodiscard]] std::vector<Seed> textMeshSeeds();    // PLY, OBJ, STL, OFF
 [[nodiscard]] std::vector<Seed> binaryMeshSeeds();  // of the same, and glTF, GLB, compressed
 [[nodiscard]] std::vector<Seed> httpSeeds();
+// What an upstream says to a proxy; `metadata`: JSON of a mesh "torus".
+[[nodiscard]] std::vector<Seed> upstreamSeeds(const std::string& metadata);
 [[nodiscard]] std::vector<Seed> formatSeeds();  // everything that is this project's own
 
 }  // namespace meshfront::fuzz

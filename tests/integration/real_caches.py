@@ -185,10 +185,11 @@ class HAProxy(RealCache):
     """HAProxy's own cache does not merge requests under way (2.6), so the cache here is
     meshfront-proxy: HAProxy balances two of them, and the services behind them."""
     name = "HAProxy"
+    replicas_port = None  # past the proxies
 
     def command(self):
         self.tls_port = free_port()
-        inner = free_port()
+        inner = self.replicas_port = free_port()
         for _ in range(2):
             self.helpers.append(Program(os.path.join(self.bin, "meshfront-proxy"), "--upstream",
                                         f"http://127.0.0.1:{inner}", "--listen", "127.0.0.1:0"))

@@ -11,6 +11,7 @@
 
 #include "service/pack_catalogue.h"
 #include "shared/bits/base64url.h"
+#include "shared/bits/crc32c.h"
 #include "shared/hierarchy/tree_bitstring.h"
 #include "shared/http/record_service.h"
 #include "tests/data/scripted_upstream.h"
@@ -33,17 +34,19 @@ class CachedCatalogueTest : public testing::Test {
     restart();
   }
   // An empty proxy over the same upstream.
-  void restart(size_t bytes = size_t{64} << 20) {
+  void restart(size_t bytes = size_t{64} << 20, size_t fetchMemory = size_t{64} << 20) {
     catalogue_.reset();
     documents_.reset();
     counters_.reset();
     budget_ = std::make_unique<MemoryBudget>(bytes);
     metrics_ = std::make_unique<Metrics>();
     counters_ = std::make_unique<ProxyCounters>(*metrics_);
-    documents_ = std::make_unique<DocumentCache>(*upstream_, *budget_, *counters_,
-                                                 [this] { return now_.load(); });
+    memory_ = std::make_unique<FetchMemory>(fetchMemory);
+    documents_ = std::make_unique<DocumentCache>(
+        *upstream_, *budget_, *memory_, *counters_,
+        DocumentCache::Options{.refreshWait = refreshWait_, .now = [this] { return now_.load(); }});
     catalogue_ = std::make_unique<CachedCatalogue>(
-        CachedStore::Parts{*upstream_, *documents_, *budget_, *counters_});
+        CachedStore::Parts{*upstream_, *documents_, *budget_, *memory_, *counters_});
   }
   std::shared_ptr<RecordStore> store() {
     auto opened = catalogue_->open("synthetic", revisionOf(mesh_.content), Waiting::allowed);
@@ -85,6 +88,8 @@ class CachedCatalogueTest : public testing::Test {
   std::unique_ptr<MemoryBudget> budget_;
   std::unique_ptr<Metrics> metrics_;
   std::unique_ptr<ProxyCounters> counters_;
+  std::unique_ptr<FetchMemory> memory_;
+  std::chrono::milliseconds refreshWait_ = std::chrono::hours(1);
   std::unique_ptr<DocumentCache> documents_;
   std::unique_ptr<CachedCatalogue> catalogue_;
   CollectLimits limits_;
@@ -305,6 +310,53 @@ TEST_F(CachedCatalogueTest, PassesTroubleOnAndForgetsIt) {
   expectRight(roots);
 }
 
+TEST_F(CachedCatalogueTest, RefusesWhatTheMemoryForFetchesCannotHold) {
+  const std::vector<NodeId> roots = mesh_.nodesAtDepth(0);
+  const auto everything = levels(12);
+  restart(size_t{64} << 20, 16'000);
+  ASSERT_TRUE(store());
+  expectError(collect(roots, everything), ErrorCode::overloaded);
+  EXPECT_EQ(memory_->bytes(), 0U);
+  expectRight(std::vector{roots.front()});  // smaller ones go on
+  EXPECT_EQ(memory_->bytes(), 0U);
+  restart(size_t{64} << 20, size_t{16} << 20);
+  expectRight(roots, everything);
+  EXPECT_EQ(memory_->bytes(), 0U);
+}
+
+TEST_F(CachedCatalogueTest, NeverKeepsTheAnswerToAnotherRequest) {
+  static_cast<void>(store());
+  // As a cache does that mixed two entries up: sound, with its own entity tag.
+  const std::vector<NodeId> roots = mesh_.nodesAtDepth(0);
+  upstream_->play([&](const UpstreamRequest&, Result<UpstreamResponse>& response) {
+    response->etag = "\"00000000-12-00000000\"";
+  });
+  expectError(collect(roots), ErrorCode::unavailable);
+  EXPECT_FALSE(store()->chunk(2, Waiting::allowed));
+  upstream_->play([&](const UpstreamRequest&, Result<UpstreamResponse>& response) {
+    response->etag = "\"" + std::string(32, 'a') + "\"";
+  });
+  EXPECT_FALSE(catalogue_->describe("synthetic", Waiting::allowed));
+  EXPECT_FALSE(catalogue_->list(Waiting::allowed));
+  upstream_->play({});
+  expectRight(roots);
+  EXPECT_TRUE(store()->chunk(2, Waiting::allowed));
+  EXPECT_TRUE(catalogue_->describe("synthetic", Waiting::allowed));
+}
+
+TEST_F(CachedCatalogueTest, NeverKeepsAConstantThatIsCutWithARightChecksum) {
+  const auto opened = store();
+  upstream_->play([](const UpstreamRequest&, Result<UpstreamResponse>& response) {
+    response->content.resize(response->content.size() / 2);
+    appendChecksum(response->content);
+  });
+  EXPECT_FALSE(opened->chunkIndex(Waiting::allowed));
+  EXPECT_FALSE(opened->chunk(2, Waiting::allowed));
+  upstream_->play({});
+  EXPECT_TRUE(opened->chunkIndex(Waiting::allowed));
+  EXPECT_TRUE(opened->chunk(2, Waiting::allowed));
+}
+
 TEST_F(CachedCatalogueTest, KeepsLimits) {
   limits_.maxRecords = 100;
   expectError(collect(mesh_.nodesAtDepth(0), levels(12)), ErrorCode::tooLarge);
@@ -392,8 +444,8 @@ TEST_F(CachedCatalogueTest, UsesQueryForLargeSets) {
   ASSERT_TRUE(origin);
   RecordService service(**origin, originMetrics_, {});
   ScriptedUpstream upstream(service);
-  DocumentCache documents(upstream, *budget_, *counters_);
-  CachedCatalogue catalogue({upstream, documents, *budget_, *counters_});
+  DocumentCache documents(upstream, *budget_, *memory_, *counters_, {});
+  CachedCatalogue catalogue({upstream, documents, *budget_, *memory_, *counters_});
   const auto opened = catalogue.open("large", revisionOf(large.content), Waiting::allowed);
   ASSERT_TRUE(opened) << opened.error().message;
   const auto wanted = large.nodesAtDepth(4);

@@ -163,7 +163,7 @@ TEST_F(HttpFrontTest, TheClientRefusesResponsesThatAreTooLong) {
   request.maxBytes = 100;
   const auto response = client_->send(request);
   ASSERT_FALSE(response);
-  EXPECT_EQ(response.error().code, ErrorCode::unavailable);
+  EXPECT_EQ(response.error().code, ErrorCode::tooLarge);
 }
 
 TEST_F(HttpFrontTest, TheClientReportsAnAbsentServer) {
