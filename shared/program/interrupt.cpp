@@ -16,9 +16,9 @@ void ask(int /*signal*/) {
 void catchInterrupts() {
   struct sigaction action {};
   action.sa_handler = &ask;
-  action.sa_flags = static_cast<int>(SA_RESETHAND);  // a second signal ends the program at once
+  sigaction(SIGTERM, &action, nullptr);  // which timeout(1) and others send more than once
+  action.sa_flags = static_cast<int>(SA_RESETHAND);  // a second Ctrl-C ends the program at once
   sigaction(SIGINT, &action, nullptr);
-  sigaction(SIGTERM, &action, nullptr);
 }
 
 bool interrupted() {
