@@ -224,6 +224,7 @@ TEST_F(LoadRunTest, CountsReceiversThatFail) {
   options.receivers = 4;
   options.concurrency = 2;
   options.workers = 2;
+  options.receiver.resumeInterval = std::chrono::milliseconds(10);
   const LoadResult result = run(options);
   EXPECT_EQ(result.failed, 4U);
   EXPECT_EQ(result.settled, 0U);
