@@ -9,9 +9,9 @@
 #include "proxy/retrying_upstream.h"
 #include "proxy/timed_upstream.h"
 #include "shared/http/record_service.h"
-#include "shared/http/server_options.h"
-#include "shared/http/server_run.h"
-#include "shared/http/termination_signals.h"
+#include "shared/http/server/server_options.h"
+#include "shared/http/server/server_run.h"
+#include "shared/http/server/termination_signals.h"
 
 namespace {
 

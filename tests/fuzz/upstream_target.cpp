@@ -47,7 +47,7 @@ class FuzzedUpstream final : public Upstream {
   FuzzInput in_;
 };
 
-std::string_view textOf(Bytes bytes) {
+std::string_view asText(Bytes bytes) {
   return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
@@ -107,11 +107,11 @@ bool readUpstream(Bytes input) {
     if (opened) accepted = useStore(**opened);
     for (int i = 0; i < 2; ++i) {  // the second time both are old
       const auto list = catalogue.list(Waiting::allowed);
-      promise(!list || (textOf(list->json.bytes()).find("meshes") != std::string_view::npos &&
+      promise(!list || (asText(list->json.bytes()).find("meshes") != std::string_view::npos &&
                         list->age->count() >= 0),
               "a catalogue is one");
       const auto mesh = catalogue.describe("torus", Waiting::allowed);
-      promise(!mesh || metadataFromJson(textOf(mesh->json.bytes())).has_value(),
+      promise(!mesh || metadataFromJson(asText(mesh->json.bytes())).has_value(),
               "metadata are sound");
       accepted = accepted || list || mesh;
       now = now.load() + std::chrono::hours(24 * 400);

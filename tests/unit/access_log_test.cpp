@@ -1,4 +1,4 @@
-#include "shared/http/access_log.h"
+#include "shared/http/server/access_log.h"
 
 #include <fcntl.h>
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // Contents of requests, byte for byte, cut at every place.
-#include "shared/http/content_reader.h"
+#include "shared/http/server/content_reader.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "shared/http/deadlines.h"
+#include "shared/http/server/deadlines.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // The server over real sockets, asked through the proxy's client.
-#include "shared/http/http_front.h"
+#include "shared/http/server/http_front.h"
 
 #include <gtest/gtest.h>
 

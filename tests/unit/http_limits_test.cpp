@@ -6,8 +6,8 @@
 #include <fstream>
 #include <thread>
 
-#include "shared/http/access_log.h"
-#include "shared/http/http_front.h"
+#include "shared/http/server/access_log.h"
+#include "shared/http/server/http_front.h"
 #include "tests/data/temporary_folder.h"
 #include "tests/unit/raw_client.h"
 

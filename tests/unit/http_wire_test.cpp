@@ -4,7 +4,7 @@
 #include <fstream>
 #include <future>
 
-#include "shared/http/http_front.h"
+#include "shared/http/server/http_front.h"
 #include "tests/data/temporary_folder.h"
 #include "tests/unit/raw_client.h"
 

@@ -1,5 +1,5 @@
 // Requests' lines and fields, byte for byte, cut at every place.
-#include "shared/http/request_head.h"
+#include "shared/http/server/request_head.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "shared/http/server_options.h"
+#include "shared/http/server/server_options.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "shared/http/worker_pool.h"
+#include "shared/http/server/worker_pool.h"
 
 namespace meshfront {
 

@@ -1,4 +1,4 @@
-#include "shared/http/termination_signals.h"
+#include "shared/http/server/termination_signals.h"
 
 #include <pthread.h>
 

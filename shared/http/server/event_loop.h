@@ -14,10 +14,10 @@
 #include <thread>
 #include <vector>
 
-#include "shared/http/connection.h"
-#include "shared/http/deadlines.h"
-#include "shared/http/exchange.h"
-#include "shared/http/response_head.h"
+#include "shared/http/server/connection.h"
+#include "shared/http/server/deadlines.h"
+#include "shared/http/server/exchange.h"
+#include "shared/http/server/response_head.h"
 #include "shared/result.h"
 
 namespace meshfront {

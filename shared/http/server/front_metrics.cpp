@@ -1,4 +1,4 @@
-#include "shared/http/front_metrics.h"
+#include "shared/http/server/front_metrics.h"
 
 namespace meshfront {
 

@@ -1,4 +1,4 @@
-#include "shared/http/response_head.h"
+#include "shared/http/server/response_head.h"
 
 #include <array>
 #include <charconv>

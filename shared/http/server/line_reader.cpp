@@ -1,4 +1,4 @@
-#include "shared/http/line_reader.h"
+#include "shared/http/server/line_reader.h"
 
 #include <algorithm>
 #include <utility>

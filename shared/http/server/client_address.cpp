@@ -1,4 +1,4 @@
-#include "shared/http/client_address.h"
+#include "shared/http/server/client_address.h"
 
 #include <arpa/inet.h>
 

@@ -12,11 +12,11 @@
 #include <cstdint>
 #include <memory>
 
-#include "shared/http/access_log.h"
-#include "shared/http/listen_address.h"
 #include "shared/http/message.h"
 #include "shared/http/metrics.h"
-#include "shared/http/server_limits.h"
+#include "shared/http/server/access_log.h"
+#include "shared/http/server/listen_address.h"
+#include "shared/http/server/server_limits.h"
 #include "shared/result.h"
 
 namespace meshfront {

@@ -9,7 +9,7 @@
 #include <string>
 #include <string_view>
 
-#include "shared/http/line_reader.h"
+#include "shared/http/server/line_reader.h"
 
 namespace meshfront {
 

@@ -9,9 +9,9 @@
 #include <memory>
 #include <string>
 
-#include "shared/http/client_address.h"
-#include "shared/http/deadlines.h"
-#include "shared/http/exchange.h"
+#include "shared/http/server/client_address.h"
+#include "shared/http/server/deadlines.h"
+#include "shared/http/server/exchange.h"
 
 namespace meshfront {
 

@@ -1,10 +1,10 @@
-#include "shared/http/server_run.h"
+#include "shared/http/server/server_run.h"
 
 #include <spdlog/spdlog.h>
 
 #include <cstdio>
 
-#include "shared/http/http_front.h"
+#include "shared/http/server/http_front.h"
 
 namespace meshfront {
 namespace {

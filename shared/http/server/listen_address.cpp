@@ -1,4 +1,4 @@
-#include "shared/http/listen_address.h"
+#include "shared/http/server/listen_address.h"
 
 #include <netdb.h>
 

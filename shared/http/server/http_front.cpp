@@ -1,4 +1,4 @@
-#include "shared/http/http_front.h"
+#include "shared/http/server/http_front.h"
 
 #include <netinet/in.h>
 #include <netinet/tcp.h>
@@ -13,7 +13,7 @@
 #include <optional>
 #include <vector>
 
-#include "shared/http/event_loop.h"
+#include "shared/http/server/event_loop.h"
 
 namespace meshfront {
 namespace {

@@ -10,14 +10,14 @@
 #include <string>
 #include <vector>
 
-#include "shared/http/access_log.h"
-#include "shared/http/address_count.h"
-#include "shared/http/content_reader.h"
-#include "shared/http/front_metrics.h"
 #include "shared/http/message.h"
-#include "shared/http/request_head.h"
-#include "shared/http/server_limits.h"
-#include "shared/http/worker_pool.h"
+#include "shared/http/server/access_log.h"
+#include "shared/http/server/address_count.h"
+#include "shared/http/server/content_reader.h"
+#include "shared/http/server/front_metrics.h"
+#include "shared/http/server/request_head.h"
+#include "shared/http/server/server_limits.h"
+#include "shared/http/server/worker_pool.h"
 
 namespace meshfront {
 

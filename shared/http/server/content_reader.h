@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <string_view>
 
-#include "shared/http/line_reader.h"
-#include "shared/http/request_head.h"
+#include "shared/http/server/line_reader.h"
+#include "shared/http/server/request_head.h"
 
 namespace meshfront {
 

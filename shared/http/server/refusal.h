@@ -1,10 +1,10 @@
 // What the server itself answers, before or instead of the handler.
 #pragma once
 
-#include "shared/http/front_metrics.h"
 #include "shared/http/message.h"
-#include "shared/http/request_head.h"
-#include "shared/http/server_limits.h"
+#include "shared/http/server/front_metrics.h"
+#include "shared/http/server/request_head.h"
+#include "shared/http/server/server_limits.h"
 
 namespace meshfront {
 

@@ -1,4 +1,4 @@
-#include "shared/http/refusal.h"
+#include "shared/http/server/refusal.h"
 
 #include "shared/http/problem.h"
 

@@ -1,4 +1,4 @@
-#include "shared/http/connection.h"
+#include "shared/http/server/connection.h"
 
 #include <sys/epoll.h>
 #include <sys/socket.h>
@@ -8,9 +8,9 @@
 #include <array>
 #include <cerrno>
 
-#include "shared/http/event_loop.h"
-#include "shared/http/refusal.h"
-#include "shared/http/response_head.h"
+#include "shared/http/server/event_loop.h"
+#include "shared/http/server/refusal.h"
+#include "shared/http/server/response_head.h"
 
 namespace meshfront {
 namespace {

@@ -1,10 +1,10 @@
-#include "shared/http/request_head.h"
+#include "shared/http/server/request_head.h"
 
 #include <algorithm>
 #include <charconv>
 #include <utility>
 
-#include "shared/http/field_line.h"
+#include "shared/http/server/field_line.h"
 
 namespace meshfront {
 namespace {

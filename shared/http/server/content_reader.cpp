@@ -1,9 +1,9 @@
-#include "shared/http/content_reader.h"
+#include "shared/http/server/content_reader.h"
 
 #include <algorithm>
 #include <charconv>
 
-#include "shared/http/field_line.h"
+#include "shared/http/server/field_line.h"
 
 namespace meshfront {
 namespace {

@@ -5,8 +5,8 @@
 
 #include "shared/http/message.h"
 #include "shared/http/metrics.h"
-#include "shared/http/server_options.h"
-#include "shared/http/termination_signals.h"
+#include "shared/http/server/server_options.h"
+#include "shared/http/server/termination_signals.h"
 
 namespace meshfront {
 

@@ -1,8 +1,8 @@
-#include "shared/http/exchange.h"
+#include "shared/http/server/exchange.h"
 
 #include <algorithm>
 
-#include "shared/http/refusal.h"
+#include "shared/http/server/refusal.h"
 
 namespace meshfront {
 

@@ -11,10 +11,10 @@
 #include <optional>
 #include <string>
 
-#include "shared/http/access_log.h"
-#include "shared/http/listen_address.h"
 #include "shared/http/record_service.h"
-#include "shared/http/server_limits.h"
+#include "shared/http/server/access_log.h"
+#include "shared/http/server/listen_address.h"
+#include "shared/http/server/server_limits.h"
 
 namespace CLI {
 class App;

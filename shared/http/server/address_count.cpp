@@ -1,4 +1,4 @@
-#include "shared/http/address_count.h"
+#include "shared/http/server/address_count.h"
 
 namespace meshfront {
 

@@ -1,4 +1,4 @@
-#include "shared/http/event_loop.h"
+#include "shared/http/server/event_loop.h"
 
 #include <sys/epoll.h>
 #include <sys/eventfd.h>

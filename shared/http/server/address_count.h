@@ -8,8 +8,8 @@
 #include <mutex>
 #include <unordered_map>
 
-#include "shared/http/client_address.h"
-#include "shared/http/server_limits.h"
+#include "shared/http/server/client_address.h"
+#include "shared/http/server/server_limits.h"
 
 namespace meshfront {
 
