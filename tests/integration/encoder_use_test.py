@@ -150,7 +150,7 @@ def test_progress_bar(folder, mesh):
 
 with tempfile.TemporaryDirectory() as name:
     work = pathlib.Path(name)
-    small = make_sphere(work, 120000)
+    small = make_sphere(work, 30000 if sanitized() else 120000)
     large = make_sphere(work, 150000 if sanitized() else 700000)  # over two seconds of work
     test_threads(work, small)
     test_memory(work, [small, large])
