@@ -40,8 +40,9 @@ class CurlUpstream final : public Upstream {
   [[nodiscard]] std::unique_ptr<Handle> take();
   void giveBack(std::unique_ptr<Handle> handle);
 
-  const Options options_;
   void noteVia(const std::string& via);
+
+  const Options options_;
   std::atomic<bool> stopping_{false};
   std::atomic<std::shared_ptr<const std::string>> via_;
   std::mutex mutex_;

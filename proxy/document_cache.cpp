@@ -3,6 +3,8 @@
 #include <charconv>
 #include <utility>
 
+#include "shared/http/field_line.h"
+
 namespace meshfront {
 namespace {
 
@@ -26,21 +28,13 @@ size_t costOf(const std::string& target, const HeldBytes& content) {
   return content.size() + kEntryOverhead + 2 * target.size();
 }
 
-std::string_view trimmedDirective(std::string_view text) {
-  while (!text.empty() && (text.front() == ' ' || text.front() == '\t')) text.remove_prefix(1);
-  while (!text.empty() && (text.back() == ' ' || text.back() == '\t')) text.remove_suffix(1);
-  return text;
-}
-
 }  // namespace
 
 std::chrono::seconds freshnessLifetime(std::string_view cacheControl) {
   constexpr std::string_view kMaxAge = "max-age=";
   uint32_t seconds = 0;
   while (!cacheControl.empty()) {
-    const size_t comma = cacheControl.find(',');
-    const std::string_view directive = trimmedDirective(cacheControl.substr(0, comma));
-    cacheControl.remove_prefix(comma == std::string_view::npos ? cacheControl.size() : comma + 1);
+    const std::string_view directive = nextInList(cacheControl);
     if (directive == "no-store" || directive == "no-cache" || directive == "private")
       return std::chrono::seconds(0);
     if (directive.starts_with(kMaxAge)) {

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cstdio>
 
-#include "shared/bits/base64url.h"
 #include "shared/http/conditional_request.h"
 #include "shared/http/problem.h"
 #include "shared/store/entity_tag.h"
@@ -214,9 +213,7 @@ Result<HttpResponse> RecordService::splits(const HttpRequest& request, const Rou
   ids_.add(set->wanted.size());
   records_.add(answer->records);
   recordBytes_.add(answer->bytes.size());
-  std::vector<uint8_t> decoded;
-  if (!byQuery) decoded = *base64urlDecode(route.last);
-  const std::span<const uint8_t> bitstring = byQuery ? request.content : decoded;
+  const std::span<const uint8_t> bitstring = byQuery ? request.content : set->fromUrl;
   std::string etag =
       recordsTag(answer->bytes, recordsKey(route.revision, bitstring, set->expansion));
   HttpResponse response =

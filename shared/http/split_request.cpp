@@ -1,6 +1,7 @@
 #include "shared/http/split_request.h"
 
 #include <charconv>
+#include <utility>
 
 #include "shared/bits/base64url.h"
 #include "shared/hierarchy/tree_bitstring.h"
@@ -50,9 +51,11 @@ Result<SplitRequest> parseSplitQuery(std::span<const uint8_t> content, bool hasQ
 
 Result<SplitRequest> parseSplitUrl(std::string_view ids, bool hasQuery, std::string_view query,
                                    unsigned maxLevel, size_t maxWanted) {
-  const auto bitstring = base64urlDecode(ids);
+  auto bitstring = base64urlDecode(ids);
   if (!bitstring) return tl::unexpected(bitstring.error());
-  return parseSplitQuery(*bitstring, hasQuery, query, maxLevel, maxWanted);
+  auto request = parseSplitQuery(*bitstring, hasQuery, query, maxLevel, maxWanted);
+  if (request) request->fromUrl = std::move(*bitstring);
+  return request;
 }
 
 std::string expansionQuery(const Expansion& expansion) {

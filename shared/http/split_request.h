@@ -24,6 +24,7 @@ inline constexpr size_t kMaxContentOctets = size_t{1} << 20;
 struct SplitRequest {
   std::vector<NodeId> wanted;  // an antichain in preorder, not empty
   Expansion expansion;
+  std::vector<uint8_t> fromUrl{};  // the set's bitstring; empty where it came as content
 };
 
 // Untrusted. ErrorCode::tooLarge beyond `maxWanted` nodes, invalid for everything else.

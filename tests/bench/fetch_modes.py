@@ -16,92 +16,53 @@ did not settle.
 
 import argparse
 import json
-import os
 import pathlib
 import signal
-import socket
-import subprocess
 import sys
 import tempfile
-import time
-import urllib.request
 
+from nginx_process import NginxProcess
 from random_views import write_views
 from served_programs import Server, run
 
 # What matters of a cache in front: answers are kept for as long as they say, and simultaneous
 # misses of one URL become one request.
 NGINX = """
-{user}
-daemon off;
-worker_processes 1;
-pid {folder}/nginx.pid;
-error_log {folder}/error.log;
-events {{ worker_connections 4096; }}
-http {{
-  proxy_cache_path {folder}/cache keys_zone=records:64m max_size=4g inactive=1d use_temp_path=off;
-  client_body_temp_path {folder}/body;
-  proxy_temp_path {folder}/proxy;
-  fastcgi_temp_path {folder}/fastcgi;
-  uwsgi_temp_path {folder}/uwsgi;
-  scgi_temp_path {folder}/scgi;
+  proxy_cache_path FOLDER/cache keys_zone=records:64m max_size=4g inactive=1d use_temp_path=off;
   log_format kinds '$request_method $upstream_cache_status $body_bytes_sent $request_uri';
-  access_log {folder}/access.log kinds;
+  access_log FOLDER/access.log kinds;
   keepalive_requests 1000000;
-  upstream origin {{ server {origin}; keepalive 16; }}
-  server {{
-    listen 127.0.0.1:{port} backlog=4096;
+  upstream origin { server ORIGIN; keepalive 16; }
+  server {
+    listen 127.0.0.1:PORT backlog=4096;
     large_client_header_buffers 4 16k;
-    location / {{
+    location / {
       proxy_pass http://origin;
       proxy_http_version 1.1;
       proxy_set_header Connection "";
       proxy_cache records;
       proxy_cache_lock on;
-    }}
-  }}
-}}
+    }
+  }
 """
 
 
-class Nginx:
-    """nginx in front of an origin, with an empty cache; its log tells what it answered itself."""
+class Nginx(NginxProcess):
+    """In front of an origin, with an empty cache; its log tells what it answered itself."""
 
     def __init__(self, origin):
-        self.folder = tempfile.TemporaryDirectory()
-        with socket.socket() as free:
-            free.bind(("127.0.0.1", 0))
-            port = free.getsockname()[1]
-        self.url = f"http://127.0.0.1:{port}"
-        configuration = pathlib.Path(self.folder.name) / "nginx.conf"
-        user = "user root;" if os.geteuid() == 0 else ""  # for the folder, which is the caller's
-        configuration.write_text(
-            NGINX.format(user=user, folder=self.folder.name, origin=origin.removeprefix("http://"), port=port)
-        )
-        self.process = subprocess.Popen(
-            ["nginx", "-c", configuration, "-e", f"{self.folder.name}/error.log"], stderr=subprocess.DEVNULL
-        )
-        opener = urllib.request.build_opener(urllib.request.ProxyHandler({}))
-        for _ in range(100):
-            try:
-                opener.open(self.url + "/healthz", timeout=1).close()
-                return
-            except OSError:
-                time.sleep(0.05)
-        sys.exit("nginx does not start")
+        self.files = tempfile.TemporaryDirectory()
+        http = NGINX.replace("ORIGIN", origin.removeprefix("http://"))
+        super().__init__(pathlib.Path(self.files.name), http)
 
-    def __enter__(self):
-        return self
-
-    def __exit__(self, *_):
-        self.process.send_signal(signal.SIGQUIT)
-        self.process.wait()
-        self.folder.cleanup()
+    def __exit__(self, *error):
+        super().__exit__(*error)
+        self.files.cleanup()
 
     def record_requests(self):
         """[(was a hit, bytes)] of the requests for records and chunks."""
         self.process.send_signal(signal.SIGUSR1)  # nginx reopens its log, all that was written is there
-        lines = (pathlib.Path(self.folder.name) / "access.log").read_text().splitlines()
+        lines = (self.folder / "access.log").read_text().splitlines()
         found = []
         for line in lines:
             _, state, length, target = line.split()

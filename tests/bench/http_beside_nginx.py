@@ -22,15 +22,12 @@ import json
 import os
 import pathlib
 import re
-import signal
-import socket
 import statistics
-import subprocess
 import sys
 import tempfile
-import time
 import urllib.request
 
+from nginx_process import NginxProcess
 from served_programs import Server, run
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "integration"))
@@ -40,13 +37,6 @@ SERVER_CORE, CLIENT_CORE = "0", "1"
 RECORD_BITS = 41  # of a synthetic record on average, for a first guess
 
 NGINX = """
-{user}
-daemon off;
-worker_processes 1;
-pid {folder}/nginx.pid;
-error_log {folder}/error.log;
-events {{ worker_connections 4096; }}
-http {{
   sendfile on;
   tcp_nopush on;
   tcp_nodelay on;
@@ -56,17 +46,11 @@ http {{
   open_file_cache_valid 1h;
   access_log off;
   default_type application/octet-stream;
-  client_body_temp_path {folder}/body;
-  proxy_temp_path {folder}/proxy;
-  fastcgi_temp_path {folder}/fastcgi;
-  uwsgi_temp_path {folder}/uwsgi;
-  scgi_temp_path {folder}/scgi;
-  server {{
-    listen 127.0.0.1:{port} backlog=4096;
-    root {folder}/files;
-    location / {{ add_header Cache-Control "public, max-age=31536000, immutable"; }}
-  }}
-}}
+  server {
+    listen 127.0.0.1:PORT backlog=4096;
+    root FOLDER/files;
+    location / { add_header Cache-Control "public, max-age=31536000, immutable"; }
+  }
 """
 
 
@@ -76,33 +60,12 @@ def get(url):
         return response.read()
 
 
-class Nginx:
+class Nginx(NginxProcess):
+    """Serves what is added as files."""
+
     def __init__(self, folder):
-        self.folder = folder
         (folder / "files").mkdir()
-        with socket.socket() as free:
-            free.bind(("127.0.0.1", 0))
-            port = free.getsockname()[1]
-        self.url = f"http://127.0.0.1:{port}"
-        user = "user root;" if os.geteuid() == 0 else ""  # for the folder, which is the caller's
-        (folder / "nginx.conf").write_text(NGINX.format(user=user, folder=folder, port=port))
-        self.process = subprocess.Popen(
-            ["taskset", "-c", SERVER_CORE, "nginx", "-c", folder / "nginx.conf", "-e", folder / "error.log"],
-            stderr=subprocess.DEVNULL,
-        )
-
-    def __enter__(self):
-        for _ in range(100):
-            with contextlib.suppress(OSError), socket.create_connection(
-                ("127.0.0.1", int(self.url.rsplit(":", 1)[1])), 1
-            ):
-                return self
-            time.sleep(0.05)
-        sys.exit("nginx does not start")
-
-    def __exit__(self, *_):
-        self.process.send_signal(signal.SIGQUIT)
-        self.process.wait()
+        super().__init__(folder, NGINX, ("taskset", "-c", SERVER_CORE))
 
     def worker(self):
         pid = self.process.pid

@@ -2,8 +2,8 @@
 #include <string>
 #include <vector>
 
+#include "shared/http/field_line.h"
 #include "shared/http/server/content_reader.h"
-#include "shared/http/server/field_line.h"
 #include "shared/http/server/request_head.h"
 #include "tests/fuzz/fuzz_input.h"
 #include "tests/fuzz/fuzz_targets.h"

@@ -14,9 +14,9 @@
 #include "shared/mesh/indexed_mesh.h"
 #include "shared/mesh/quantization.h"
 #include "shared/mesh/vertex_attributes.h"
+#include "shared/mesh/vertex_normals.h"
 #include "shared/result.h"
 #include "viewer/gl/gl_object.h"
-#include "viewer/gl/vertex_normals.h"
 
 namespace meshfront {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <charconv>
 
-#include "shared/http/server/field_line.h"
+#include "shared/http/field_line.h"
 
 namespace meshfront {
 namespace {

@@ -4,7 +4,7 @@
 #include <charconv>
 #include <utility>
 
-#include "shared/http/server/field_line.h"
+#include "shared/http/field_line.h"
 
 namespace meshfront {
 namespace {

@@ -1,4 +1,4 @@
-#include "shared/http/server/field_line.h"
+#include "shared/http/field_line.h"
 
 #include <algorithm>
 #include <array>

@@ -1,4 +1,4 @@
-#include "viewer/gl/vertex_normals.h"
+#include "shared/mesh/vertex_normals.h"
 
 #include <algorithm>
 #include <cmath>
