@@ -26,7 +26,7 @@ build=(
   zlib1g-dev liblzma-dev libzstd-dev   # compressed mesh files
 )
 # What the programs, the demo and the examples of the README need beside the libraries.
-run=(libegl-mesa0 libgl1-mesa-dri curl xz-utils python3)
+run=(libegl-mesa0 libgl1-mesa-dri fonts-dejavu-core curl xz-utils python3)
 # What test.sh needs on top.
 test=(
   libgtest-dev libbenchmark-dev

@@ -1,17 +1,16 @@
-// The mesh as refined so far, as a file.
+// The meshes as refined so far, as a file.
 #pragma once
 
 #include <filesystem>
 
-#include "shared/mesh/quantization.h"
-#include "shared/refinement/selectively_refined_mesh.h"
 #include "shared/result.h"
+#include "shared/scene/scene_receiver.h"
 
 namespace meshfront {
 
-// The front's triangles in world coordinates, as binary PLY.
-[[nodiscard]] Result<void> exportMesh(const SelectivelyRefinedMesh& mesh,
-                                      const Quantization& quantization,
+// The fronts' triangles in world coordinates, those of all meshes of the scene as one, as binary
+// PLY. Colours and normals of a scene of several meshes only where all have them.
+[[nodiscard]] Result<void> exportMesh(const SceneReceiver& scene,
                                       const std::filesystem::path& path);
 
 }  // namespace meshfront

@@ -8,34 +8,21 @@
 
 #include "shared/program/interrupt.h"
 #include "shared/receiver/http_fetcher.h"
-#include "shared/receiver/receiver.h"
+#include "shared/scene/scene_receiver.h"
 #include "viewer/export_mesh.h"
 #include "viewer/gl/gl_context.h"
-#include "viewer/mesh_picture.h"
 #include "viewer/picture/picture.h"
 #include "viewer/progress_line.h"
 #include "viewer/reference_picture.h"
 #include "viewer/run/trace.h"
 #include "viewer/run_summary.h"
+#include "viewer/scene_options.h"
+#include "viewer/scene_picture.h"
 
 namespace meshfront {
 namespace {
 
 using Kind = StopCondition::Kind;
-
-ReceiverOptions receiverOptions(const ViewOptions& options) {
-  ReceiverOptions result;
-  result.mode = options.mode;
-  result.order = options.order;
-  result.batch = options.batch;
-  result.window = options.window;
-  // A target in dB may need what a settled view does not show: hidden corners of visible triangles.
-  const bool settledIsEnough = options.until.kind == Kind::settled;
-  result.goal = settledIsEnough ? ReceiverOptions::Goal::settled : ReceiverOptions::Goal::complete;
-  if (options.until.kind == Kind::records) result.limits.records = options.until.amount;
-  if (options.until.kind == Kind::bytes) result.limits.bytesDown = options.until.amount;
-  return result;
-}
 
 DrawStyle styleOf(const ViewOptions& options) {
   DrawStyle style;
@@ -50,7 +37,7 @@ class HeadlessRun {
         style_(styleOf(options)),
         renderer_(std::move(renderer)),
         target_(options.until.kind == Kind::psnr ? options.until.decibels : options.psnrTarget),
-        receiver_(options.url, receiverOptions(options), http_) {}
+        scene_(options.scene, pictureSceneOptions(options), http_) {}
 
   int run() {
     Result<void> done = refine();
@@ -78,36 +65,36 @@ class HeadlessRun {
       if (!trace) return tl::unexpected(trace.error());
       trace_.emplace(std::move(*trace));
     }
-    while (receiver_.isAtWork() && !stopped()) {
-      (void)receiver_.waitForArrival(std::chrono::milliseconds(50));
-      const bool applied = receiver_.advance();
-      if (receiver_.mesh() == nullptr) continue;
+    while (scene_.isAtWork() && !stopped()) {
+      (void)scene_.waitForArrival(std::chrono::milliseconds(50));
+      const bool applied = scene_.advance();
+      if (!scene_.allHere()) continue;
       if (!picture_) {
         if (Result<void> prepared = prepare(); !prepared) return prepared;
         if (Result<void> looked = look(); !looked) return looked;
       } else if (applied) {
         if (Result<void> looked = look(); !looked) return looked;
       }
-      if (!receiver_.wantsRanking() || stopped()) continue;
-      const auto pixels = picture_->count(*receiver_.mesh(), camera_);
-      if (!pixels) return tl::unexpected(pixels.error());
-      receiver_.rank(*pixels);
+      if (!scene_.wantsRanking() || stopped()) continue;
+      const auto counts = picture_->count(scene_, camera_, style_);
+      if (!counts) return tl::unexpected(counts.error());
+      scene_.rank(*counts);
     }
     return {};
   }
 
-  // The first time that there is a mesh.
+  // When the meshes are here.
   Result<void> prepare() {
-    const MeshMetadata& metadata = *receiver_.metadata();
-    const Bounds bounds = Bounds::of(metadata.boundsMin, metadata.boundsMax);
-    camera_ = placeCamera(options_.camera, bounds, options_.size.aspect());
-    auto picture = MeshPicture::create(
-        options_.size, metadata.quantization, bounds,
+    camera_ = placeCamera(options_.camera, *scene_.bounds(), options_.size.aspect());
+    auto picture = ScenePicture::create(
+        options_.size, options_.scene,
         options_.countOnCpu ? PixelCounter::Method::readBack : PixelCounter::Method::compute);
     if (!picture) return tl::unexpected(picture.error());
     picture_.emplace(std::move(*picture));
     if (!options_.reference) return {};
-    auto reference = drawReference(*options_.reference, *picture_, camera_, options_.colours);
+    if (Result<void> drawn = picture_->draw(scene_, camera_, style_); !drawn) return drawn;
+    auto reference = drawReference(*options_.reference, *picture_, camera_, options_.colours,
+                                   scene_.receiver(0).mesh()->attributeLayout().normalBits);
     if (!reference) return tl::unexpected(reference.error());
     reference_ = std::move(*reference);
     return {};
@@ -115,7 +102,8 @@ class HeadlessRun {
 
   // What an answer gained: PSNR where it is asked for, and a line of the trace.
   Result<void> look() {
-    const ReceiverStatistics& statistics = receiver_.statistics();
+    const SceneStatus status = scene_.status();
+    const ReceiverStatistics& statistics = status.statistics;
     const bool wantsPsnr = reference_ && (trace_ || (target_ && !targetReached_));
     if (wantsPsnr) {
       if (Result<void> measured = measure(); !measured) return measured;
@@ -124,17 +112,16 @@ class HeadlessRun {
     }
     if (trace_) {
       trace_->write({seconds(), statistics.requests, statistics.records, statistics.traffic.bytesUp,
-                     statistics.traffic.bytesDown(), receiver_.mesh()->drawnTriangleCount(),
-                     receiver_.visibleCandidateCount(), wantsPsnr ? psnr_ : std::nullopt});
+                     statistics.traffic.bytesDown(), status.triangles, status.visibleCandidates,
+                     wantsPsnr ? psnr_ : std::nullopt});
     }
-    progress_.show(seconds(), statistics.records, receiver_.mesh()->splitCount(),
+    progress_.show(seconds(), statistics.records, status.splitCount,
                    statistics.traffic.bytesDown());
     return {};
   }
 
   Result<void> measure() {
-    if (Result<void> drawn = picture_->draw(*receiver_.mesh(), camera_, style_); !drawn)
-      return drawn;
+    if (Result<void> drawn = picture_->draw(scene_, camera_, style_); !drawn) return drawn;
     const Result<double> psnr = peakSignalToNoise(picture_->read(), *reference_);
     if (!psnr) return tl::unexpected(psnr.error());
     psnr_ = std::min(*psnr, kIdenticalPsnr);
@@ -146,13 +133,11 @@ class HeadlessRun {
       if (Result<void> measured = measure(); !measured) return measured;
     }
     if (options_.screenshot) {
-      if (Result<void> drawn = picture_->draw(*receiver_.mesh(), camera_, style_); !drawn)
-        return drawn;
+      if (Result<void> drawn = picture_->draw(scene_, camera_, style_); !drawn) return drawn;
       if (Result<void> written = writePng(picture_->read(), *options_.screenshot); !written)
         return written;
     }
-    if (options_.exportPly)
-      return exportMesh(*receiver_.mesh(), receiver_.metadata()->quantization, *options_.exportPly);
+    if (options_.exportPly) return exportMesh(scene_, *options_.exportPly);
     return {};
   }
 
@@ -165,13 +150,13 @@ class HeadlessRun {
   }
 
   [[nodiscard]] RunSummary summary() const {
-    RunSummary summary = summaryOf(receiver_, options_.urlText, seconds());
+    RunSummary summary = summaryOf(scene_.status(), options_, seconds());
     summary.renderer = renderer_;
     summary.psnr = psnr_;
     summary.psnrTarget = target_;
     summary.targetReached = targetReached_;
     if (picture_) summary.camera = formatCamera(camera_);
-    if (receiver_.isAtWork()) {
+    if (scene_.isAtWork()) {
       if (options_.until.kind == Kind::psnr && targetReached_) {
         summary.state = "target reached";
       } else if (interrupted()) {
@@ -185,7 +170,7 @@ class HeadlessRun {
 
   // A mesh that is complete, or settled, before it costs what it may cost has met its limit too.
   [[nodiscard]] bool succeeded() const {
-    const ReceiverState state = receiver_.state();
+    const ReceiverState state = scene_.status().state;
     if (options_.until.kind == Kind::psnr) return targetReached_.has_value();
     return state == ReceiverState::complete || state == ReceiverState::limitReached ||
            (state == ReceiverState::settled && options_.until.kind == Kind::settled);
@@ -197,8 +182,8 @@ class HeadlessRun {
   const std::optional<double> target_;  // dB
   const std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
   HttpFetcher http_;
-  Receiver receiver_;
-  std::optional<MeshPicture> picture_;
+  SceneReceiver scene_;
+  std::optional<ScenePicture> picture_;
   std::optional<Picture> reference_;
   std::optional<TraceWriter> trace_;
   Camera camera_;

@@ -26,8 +26,8 @@ std::vector<uint32_t> firstAtSamePlace(const std::vector<std::array<double, 3>>&
 
 }  // namespace
 
-Result<Picture> drawReference(const std::filesystem::path& meshFile, MeshPicture& picture,
-                              const Camera& camera, bool colours) {
+Result<Picture> drawReference(const std::filesystem::path& meshFile, ScenePicture& picture,
+                              const Camera& camera, bool colours, unsigned normalBits) {
   Result<IndexedMesh> mesh = readMesh(meshFile);
   if (!mesh) return tl::unexpected(mesh.error());
   const std::vector<uint32_t> first = firstAtSamePlace(mesh->positions);
@@ -37,11 +37,16 @@ Result<Picture> drawReference(const std::filesystem::path& meshFile, MeshPicture
   std::vector<GridPosition> grid;
   grid.reserve(mesh->positions.size());
   for (const auto& position : mesh->positions) grid.push_back(fine.toGrid(position));
-  // Colours as cleaning gives them: those of the first of the vertices at one place.
-  const auto coloured = packAttributes(mesh->colours, {}, {true, 0});
+  // As cleaning gives them: those of the first of the vertices at one place.
+  const unsigned bits = mesh->normals.empty() ? 0 : normalBits;
+  const auto carried = packAttributes(mesh->colours, mesh->normals, {!mesh->colours.empty(), bits});
+  MeshArrays arrays{fine, grid, mesh->triangles, 1};
+  if (!mesh->colours.empty()) arrays.coloured = carried;
+  if (bits != 0) arrays.normals = carried;
+  arrays.normalBits = bits;
   DrawStyle style;
   style.colours = colours;
-  return picture.drawOther({fine, grid, mesh->triangles, 1, coloured}, camera, style);
+  return picture.drawOther(arrays, camera, style);
 }
 
 }  // namespace meshfront

@@ -20,19 +20,18 @@ std::string decibels(double psnr) {
 
 }  // namespace
 
-RunSummary summaryOf(const Receiver& receiver, const std::string& url, double seconds) {
+RunSummary summaryOf(const SceneStatus& scene, const ViewOptions& options, double seconds) {
   RunSummary summary;
-  summary.url = url;
-  summary.state = stateName(receiver.state());
-  summary.reason = receiver.reason();
-  summary.mode = receiver.mode();
-  summary.statistics = receiver.statistics();
+  summary.url = options.urlText;
+  summary.state = stateName(scene.state);
+  summary.reason = scene.reason;
+  summary.mode = options.mode;
+  summary.statistics = scene.statistics;
   summary.seconds = seconds;
-  if (const MeshMetadata* metadata = receiver.metadata()) {
-    summary.revision = metadata->revision;
-    summary.splits = metadata->splitCount;
-  }
-  if (receiver.mesh() != nullptr) summary.triangles = receiver.mesh()->drawnTriangleCount();
+  if (!scene.meshes.empty()) summary.revision = scene.meshes.front().revision;
+  summary.splits = scene.splitCount;
+  summary.triangles = scene.triangles;
+  summary.scene = scene;
   return summary;
 }
 
@@ -52,6 +51,12 @@ std::string toText(const RunSummary& summary) {
   if (is.recordsWhenSettled && *is.recordsWhenSettled != is.records)
     text << "; " << *is.recordsWhenSettled << " when the view had settled";
   text << "\ntriangles  " << summary.triangles;
+  if (summary.scene.collapses + summary.scene.resplits > 0)
+    text << "; " << summary.scene.collapses << " times collapsed, " << summary.scene.resplits
+         << " times split again";
+  if (is.recordsFromDisk > 0) text << "\nfrom disk  " << is.recordsFromDisk << " records";
+  text << "\nmemory     " << (summary.scene.cpuBytes + summary.scene.gpuBytes) / 1'000'000
+       << " MB, " << summary.scene.gpuBytes / 1'000'000 << " of these on the GPU";
   text << "\nrequests   " << is.requests
        << (summary.mode == FetchMode::chunks ? " for chunks, " : " for records, ")
        << is.traffic.attempts << " in all";
@@ -88,6 +93,12 @@ std::string toJson(const RunSummary& summary) {
       {"records_of_mesh", summary.splits},
       {"share", share(is.records, summary.splits)},
       {"triangles", summary.triangles},
+      {"splits", summary.scene.splits},
+      {"collapses", summary.scene.collapses},
+      {"resplits", summary.scene.resplits},
+      {"records_from_disk", is.recordsFromDisk},
+      {"cpu_bytes", summary.scene.cpuBytes},
+      {"gpu_bytes", summary.scene.gpuBytes},
       {"requests", is.requests},
       {"http_requests", is.traffic.attempts},
       {"bytes_up", is.traffic.bytesUp},
@@ -102,6 +113,16 @@ std::string toJson(const RunSummary& summary) {
       {"camera", summary.camera},
       {"renderer", summary.renderer},
   };
+  if (summary.scene.meshes.size() > 1) {
+    for (const MeshProgress& mesh : summary.scene.meshes) {
+      json["meshes"].push_back({{"name", mesh.name},
+                                {"revision", mesh.revision},
+                                {"state", stateName(mesh.state)},
+                                {"triangles", mesh.triangles},
+                                {"splits", mesh.splits},
+                                {"records_of_mesh", mesh.splitCount}});
+    }
+  }
   if (!summary.reason.empty()) json["reason"] = summary.reason;
   if (is.recordsWhenSettled) json["records_when_settled"] = *is.recordsWhenSettled;
   if (summary.psnr) json["psnr"] = *summary.psnr;

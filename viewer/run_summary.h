@@ -5,7 +5,8 @@
 #include <optional>
 #include <string>
 
-#include "shared/receiver/receiver.h"
+#include "shared/scene/scene_status.h"
+#include "viewer/view_options.h"
 
 namespace meshfront {
 
@@ -25,6 +26,7 @@ struct RunSummary {
   std::string reason;      // of degraded
   uint64_t splits = 0;     // records of the whole mesh
   uint64_t triangles = 0;  // drawn
+  SceneStatus scene;       // as it was left
   FetchMode mode = FetchMode::exact;
   ReceiverStatistics statistics;
   double seconds = 0;
@@ -37,8 +39,8 @@ struct RunSummary {
 
 inline constexpr double kIdenticalPsnr = 100;  // stands for infinity, which JSON cannot say
 
-// What the receiver knows; PSNR, target, camera and renderer are left to the caller.
-[[nodiscard]] RunSummary summaryOf(const Receiver& receiver, const std::string& url,
+// What the refinement knows; PSNR, target, camera and renderer are left to the caller.
+[[nodiscard]] RunSummary summaryOf(const SceneStatus& scene, const ViewOptions& options,
                                    double seconds);
 [[nodiscard]] Milestone milestone(const ReceiverStatistics& statistics, double seconds);
 [[nodiscard]] std::string toText(const RunSummary& summary);  // lines

@@ -1,48 +1,82 @@
-// The way of a turn of the window's loop, none of which waits for the network:
-//   mesh    apply what has arrived, for a few milliseconds at most
-//   (draw)
-//   drawn   count pixels where a ranking is due: the view changed, a second has gone by, or the
-//   last
-//           ranking is used up; then rank and request
+// The way of a turn of the window's loop, none of which waits for the network or for a mesh:
+//   turn    take what the refinement thread has told, upload some of it
+//   draw    the scene, then start counting the pixels of what was drawn
+//   turn    hand the counts that have arrived to the refinement thread, which ranks and requests
 #include "viewer/window_run.h"
 
-#include <algorithm>
 #include <chrono>
 #include <iostream>
 #include <optional>
 #include <string>
-#include <vector>
+#include <utility>
 
 #include "shared/program/interrupt.h"
 #include "shared/receiver/http_fetcher.h"
-#include "shared/receiver/receiver.h"
+#include "shared/scene/local_error.h"
+#include "shared/scene/refinement_thread.h"
+#include "shared/scene/view_prediction.h"
 #include "viewer/export_mesh.h"
-#include "viewer/mesh_picture.h"
+#include "viewer/panel_numbers.h"
 #include "viewer/run/trace.h"
 #include "viewer/run_summary.h"
+#include "viewer/scene_drawing.h"
+#include "viewer/scene_options.h"
+#include "viewer/window/message_window.h"
+#include "viewer/window/trouble_message.h"
 #include "viewer/window/viewer_window.h"
+#include "viewer/window_stage.h"
 
 namespace meshfront {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-using std::chrono::milliseconds;
 
-constexpr milliseconds kApplyingTime{4};     // of a turn, at most
-constexpr size_t kSplitsBetweenLooks = 100;  // at the clock
-constexpr milliseconds kRankingInterval{1'000};
-constexpr milliseconds kResumeInterval{5'000};  // after a server was lost
+constexpr double kSpotRadius = 0.05;         // of the scene's radius: what "refine here" raises
+constexpr double kPredictedAhead = 0.5;      // seconds
+constexpr double kPredictionInterval = 0.4;  // seconds between counts of predicted views
+constexpr int kPredictionDivisor = 4;        // of the picture's resolution
 
-std::string grouped(uint64_t number) {
-  std::string digits = std::to_string(number);
-  for (size_t i = digits.size(); i > 3; i -= 3) digits.insert(i - 3, ",");
-  return digits;
+constexpr std::chrono::milliseconds kDescriptionWait{100};
+
+// Digits behind the point that tell neighbouring grid points apart.
+int decimalsOf(double step) {
+  int decimals = 0;
+  for (double unit = 1; unit > step && decimals < 12; unit /= 10) ++decimals;
+  return decimals;
+}
+
+std::string nodeText(const NodeId& id) {
+  std::string text = std::to_string(id.tree) + ":";
+  for (unsigned i = 0; i < id.depth; ++i) text += id.step(i) ? '1' : '0';
+  return text;
+}
+
+Colouring colouringOf(ColouringMode mode) {
+  switch (mode) {
+    case ColouringMode::own:
+    case ColouringMode::clay:
+      return Colouring::surface;
+    case ColouringMode::tree:
+      return Colouring::tree;
+    case ColouringMode::level:
+      return Colouring::level;
+    case ColouringMode::pixels:
+      return Colouring::pixels;
+    case ColouringMode::missing:
+      return Colouring::missing;
+  }
+  return Colouring::surface;
+}
+
+HttpFetcherOptions fetcherOptions() {
+  HttpFetcherOptions options;
+  options.slots = LinkMeter::kWidestWindow;
+  return options;
 }
 
 class WindowRun {
  public:
-  explicit WindowRun(const ViewOptions& options)
-      : options_(options), receiver_(options.url, receiverOptions(options), http_) {}
+  explicit WindowRun(const ViewOptions& options) : options_(options) {}
 
   Result<void> run() {
     if (options_.trace) {
@@ -50,30 +84,36 @@ class WindowRun {
       if (!trace) return tl::unexpected(trace.error());
       trace_.emplace(std::move(*trace));
     }
-    if (Result<void> connected = connect(); !connected || !receiver_.mesh()) return connected;
-    const MeshMetadata& metadata = *receiver_.metadata();
-    WindowOptions windowOptions;
-    windowOptions.style.colours = options_.colours;
-    windowOptions.title = metadata.name + " - meshfront";
-    windowOptions.size = options_.size;
-    windowOptions.camera = options_.camera;
-    windowOptions.bounds = Bounds::of(metadata.boundsMin, metadata.boundsMax);
-    auto window = ViewerWindow::open(windowOptions);
-    if (!window) return tl::unexpected(window.error());
-    window_.emplace(std::move(*window));
-    counter_.emplace(PixelCounter::create(options_.countOnCpu ? PixelCounter::Method::readBack
-                                                              : PixelCounter::Method::compute));
+    if (Result<void> opened = open(); !opened) return opened;
+    thread_.emplace(options_.scene, windowSceneOptions(options_), http_,
+                    [] { ViewerWindow::wake(); });
     WindowCallbacks callbacks;
-    callbacks.mesh = [this] { return applyAnswers(); };
-    callbacks.drawn = [this](const DrawnView& view) { lookAt(view); };
-    callbacks.status = [this] { return statusLines(); };
-    callbacks.finished = [] { return interrupted(); };
-    if (Result<void> ran = window_->run(callbacks); !ran) return ran;
-    return writeResults(windowOptions.bounds);
+    callbacks.turn = [this] { return turn(); };
+    callbacks.draw = [this](const ViewToDraw& view) { return draw(view); };
+    callbacks.status = [this] { return status(); };
+    callbacks.pick = [this](const SurfacePlace& place) { return pick(place); };
+    callbacks.refineHere = [this](const SurfacePlace& place) { return refineHere(place); };
+    callbacks.say = [this](const std::string& text) {
+      (options_.json ? std::cerr : std::cout) << text << std::endl;
+    };
+    callbacks.finished = [this] { return interrupted() || failure_ || scriptEnded(); };
+    std::optional<WindowStage> stage;
+    if (!options_.script.empty()) {
+      stage.emplace(*window_);
+      script_.emplace(options_.script, options_.scriptFile);
+      callbacks.turnEnd = [this, &stage] { (void)script_->turn(*stage); };
+    }
+    Result<void> ran = window_->run(callbacks);
+    final_ = thread_->status();
+    SceneReceiver& scene = thread_->stop();
+    if (!ran) return ran;
+    if (failure_) return tl::unexpected(*failure_);
+    if (script_ && script_->state() == ScriptPlayer::State::failed) return fail(script_->message());
+    return writeResults(scene);
   }
 
   void report() const {
-    RunSummary summary = summaryOf(receiver_, options_.urlText, seconds());
+    RunSummary summary = summaryOf(final_, options_, seconds());
     if (window_) {
       summary.camera = formatCamera(window_->camera());
       summary.renderer = window_->context().description();
@@ -82,119 +122,174 @@ class WindowRun {
   }
 
  private:
-  static ReceiverOptions receiverOptions(const ViewOptions& options) {
-    ReceiverOptions result;
-    result.mode = options.mode;
-    result.order = options.order;
-    result.batch = options.batch;
-    result.window = options.window;
-    result.freshRanking = false;  // a ranking serves for a second, so that frames stay short
-    result.onArrival = [] { ViewerWindow::wake(); };
-    return result;
-  }
-
   [[nodiscard]] double seconds() const {
     return std::chrono::duration<double>(Clock::now() - start_).count();
   }
 
-  Result<void> connect() {
-    while (receiver_.state() == ReceiverState::connecting && !interrupted()) {
-      (void)receiver_.waitForArrival(milliseconds(50));
-      (void)receiver_.advance();
+  Result<void> open() {
+    WindowOptions windowOptions;
+    windowOptions.title = titleOf(options_) + " - meshfront";
+    windowOptions.size = options_.size;
+    windowOptions.camera = options_.camera;
+    windowOptions.interfaceScale = options_.interfaceScale;
+    windowOptions.scripted = !options_.script.empty();
+    windowOptions.switches.colouring = options_.colours ? ColouringMode::own : ColouringMode::clay;
+    windowOptions.switches.geomorph = options_.geomorph;
+    auto window = ViewerWindow::open(windowOptions);
+    if (!window) {
+      if (window.error().code == ErrorCode::invalid && options_.script.empty()) {
+        (void)showMessageWindow(windowOptions.title, missingOpenGlMessage(window.error().message),
+                                interrupted);
+      }
+      return tl::unexpected(window.error());
     }
-    if (receiver_.state() == ReceiverState::degraded)
-      return fail(ErrorCode::unavailable, receiver_.reason());
+    window_.emplace(std::move(*window));
+    auto drawing = SceneDrawing::create(
+        options_.scene, options_.countOnCpu ? PixelCounter::Method::readBack
+                                            : PixelCounter::preferred(window_->context()));
+    if (!drawing) return tl::unexpected(drawing.error());
+    drawing_.emplace(std::move(*drawing));
     return {};
   }
 
-  MeshArrays applyAnswers() {
-    const Clock::time_point deadline = Clock::now() + kApplyingTime;
-    while (true) {
-      const uint64_t before = receiver_.statistics().records;
-      const bool finished = receiver_.advance(kSplitsBetweenLooks);
-      if (finished && trace_) writeTrace();
-      const bool moved = finished || receiver_.statistics().records != before;
-      if (!moved || Clock::now() >= deadline) break;
+  [[nodiscard]] bool scriptEnded() const {
+    return script_ && script_->state() != ScriptPlayer::State::playing;
+  }
+
+  SceneTurn turn() {
+    if (auto counts = drawing_->takeCounts()) thread_->see(std::move(*counts));
+    if (auto counts = drawing_->takePass()) thread_->see(std::move(*counts));
+    const Result<bool> changed = drawing_->take(thread_->takeNews(), seconds());
+    if (!changed) failure_ = changed.error();
+    status_ = thread_->status();
+    numbers_.observe(status_, seconds());
+    if (trace_) writeTrace();
+    const bool atWork =
+        status_.state == ReceiverState::connecting || status_.state == ReceiverState::refining;
+    if (!drawing_->bounds()) return {false, false, atWork};
+    window_->setScene({*drawing_->bounds(), drawing_->hasColours()});
+    const bool slides =
+        window_->switches().geomorph && seconds() < drawing_->slidesUntil(kDefaultSlide);
+    return {changed.value_or(false), slides || drawing_->isUploading(),
+            atWork || drawing_->isCounting()};
+  }
+
+  Result<void> draw(const ViewToDraw& view) {
+    const DrawStyle style = styleOf(view.switches);
+    drawing_->draw(view.target, view.camera, view.bounds, style, view.switches.missingBounds,
+                   seconds());
+    target_ = &view.target;
+    bounds_ = view.bounds;
+    if (options_.itemDivisor == 1) {
+      (void)drawing_->startCount(view.target, view.camera);
+    } else if (auto started = drawing_->startPass(view.camera, view.bounds, view.target.size(),
+                                                  options_.itemDivisor, style, seconds(), false);
+               !started) {
+      return tl::unexpected(started.error());
     }
-    const SelectivelyRefinedMesh& mesh = *receiver_.mesh();
-    // Nothing is drawn while nothing changes: what was counted last still holds.
-    if (receiver_.wantsRanking() && countedAt_ == mesh.changeCount()) receiver_.rank(pixels_);
-    if (receiver_.state() == ReceiverState::degraded) tryToResume();
-    return {receiver_.metadata()->quantization, mesh.positions(), mesh.drawnCorners(),
-            mesh.changeCount(), mesh.coloured()};
+    prediction_.see(seconds(), view.camera);
+    return options_.prefetch ? lookAhead(view, style) : Result<void>();
   }
 
-  void tryToResume() {
-    const Clock::time_point now = Clock::now();
-    if (now - resumedAt_ < kResumeInterval) return;
-    resumedAt_ = now;
-    (void)receiver_.resume();
+  // Where the movement leads to, now and then, while nothing is wanted for the view itself.
+  Result<void> lookAhead(const ViewToDraw& view, const DrawStyle& style) {
+    const bool spare =
+        status_.state == ReceiverState::settled || status_.state == ReceiverState::limitReached;
+    if (!spare || seconds() - lookedAhead_ < kPredictionInterval) return {};
+    const std::optional<Camera> ahead = prediction_.ahead(kPredictedAhead);
+    if (!ahead) return {};
+    lookedAhead_ = seconds();
+    const auto started = drawing_->startPass(*ahead, view.bounds, view.target.size(),
+                                             kPredictionDivisor, style, seconds(), true);
+    if (!started) return tl::unexpected(started.error());
+    return {};
   }
 
-  void lookAt(const DrawnView& view) {
-    const Clock::time_point now = Clock::now();
-    if (!view.viewChanged && !receiver_.wantsRanking() && now - rankedAt_ < kRankingInterval)
-      return;
-    rankedAt_ = now;
-    counter_->count(view.target, view.mesh, pixels_);
-    countedAt_ = receiver_.mesh()->changeCount();
-    receiver_.rank(pixels_);
+  [[nodiscard]] DrawStyle styleOf(const ViewSwitches& switches) const {
+    DrawStyle style;
+    style.flatShading = switches.flatShading;
+    style.wireframe = switches.wireframe;
+    style.colours = switches.colouring != ColouringMode::clay;
+    style.colouring = colouringOf(switches.colouring);
+    style.slideSeconds = switches.geomorph ? kDefaultSlide : 0;
+    return style;
+  }
+
+  PickedPoint pick(const SurfacePlace& place) {
+    PickedPoint point;
+    if (target_ == nullptr) return point;
+    const auto found =
+        drawing_->placeAt(*target_, window_->camera(), bounds_, static_cast<int>(place.pixel.x),
+                          static_cast<int>(place.pixel.y));
+    if (!found) return point;
+    const MeshMetadata& metadata = drawing_->metadata(found->mesh);
+    point.decimals = decimalsOf(metadata.quantization.step);
+    point.mesh = options_.scene[found->mesh].name;
+    point.localError = found->vertex.isLeaf != 0 ? 0 : localError(metadata, found->vertex.level);
+    if (const auto described = thread_->describe(found->mesh, found->slot, kDescriptionWait))
+      point.node = nodeText(described->node);
+    return point;
+  }
+
+  std::string refineHere(const SurfacePlace& place) {
+    thread_->refineFirst(RefinedSpot{place.world, kSpotRadius * bounds_.radius()});
+    return "refining here first";
+  }
+
+  PanelStatus status() {
+    PanelStatus status = numbers_.status(seconds(), drawing_->countSeconds());
+    status.legend = legendOf(colouringOf(window_->switches().colouring), drawing_->finestLevel());
+    return status;
   }
 
   void writeTrace() {
-    const ReceiverStatistics& statistics = receiver_.statistics();
-    trace_->write({seconds(), statistics.requests, statistics.records, statistics.traffic.bytesUp,
-                   statistics.traffic.bytesDown(), receiver_.mesh()->drawnTriangleCount(),
-                   receiver_.visibleCandidateCount(), std::nullopt});
+    const ReceiverStatistics& is = status_.statistics;
+    if (is.answers == tracedAnswers_) return;
+    tracedAnswers_ = is.answers;
+    trace_->write({seconds(), is.requests, is.records, is.traffic.bytesUp, is.traffic.bytesDown(),
+                   status_.triangles, status_.visibleCandidates, std::nullopt});
   }
 
-  std::vector<std::string> statusLines() const {
-    const ReceiverStatistics& statistics = receiver_.statistics();
-    const SelectivelyRefinedMesh& mesh = *receiver_.mesh();
-    std::vector<std::string> lines{
-        std::string("state\t") + stateName(receiver_.state()),
-        "records\t" + grouped(statistics.records) + " of " + grouped(mesh.splitCount()),
-        "triangles\t" + grouped(mesh.drawnTriangleCount()),
-        "bytes down\t" + grouped(statistics.traffic.bytesDown()),
-        "bytes up\t" + grouped(statistics.traffic.bytesUp),
-        "requests\t" + grouped(statistics.requests) + ", " +
-            std::to_string(receiver_.requestsUnderWay()) + " under way",
-    };
-    if (!receiver_.reason().empty()) lines.push_back(receiver_.reason());
-    return lines;
-  }
-
-  Result<void> writeResults(const Bounds& bounds) {
-    const SelectivelyRefinedMesh& mesh = *receiver_.mesh();
+  Result<void> writeResults(SceneReceiver& scene) {
+    if (!scene.bounds()) {  // closed before there was anything to see
+      if (final_.state != ReceiverState::degraded) return {};
+      return fail(ErrorCode::unavailable, final_.reason);
+    }
     if (options_.screenshot) {
-      auto picture = MeshPicture::create(window_->pictureSize(), receiver_.metadata()->quantization,
-                                         bounds, PixelCounter::Method::readBack);
-      if (!picture) return tl::unexpected(picture.error());
-      if (Result<void> drawn = picture->draw(mesh, window_->camera(), {}); !drawn) return drawn;
-      if (Result<void> written = writePng(picture->read(), *options_.screenshot); !written)
+      auto target = RenderTarget::create(window_->pictureSize());
+      if (!target) return tl::unexpected(target.error());
+      if (auto taken = drawing_->take(scene.takeNews(), seconds(), GpuMesh::kNoLimit); !taken)
+        return tl::unexpected(taken.error());
+      DrawStyle style;
+      style.colours = options_.colours;
+      drawing_->draw(*target, window_->camera(), *drawing_->bounds(), style, false, seconds());
+      if (Result<void> written = writePng(target->readPicture(), *options_.screenshot); !written)
         return written;
     }
     if (options_.exportPly) {
-      if (Result<void> written =
-              exportMesh(mesh, receiver_.metadata()->quantization, *options_.exportPly);
-          !written)
-        return written;
+      if (Result<void> written = exportMesh(scene, *options_.exportPly); !written) return written;
     }
     return trace_ ? trace_->close() : Result<void>();
   }
 
   const ViewOptions& options_;
   const Clock::time_point start_ = Clock::now();
-  // The fetcher's thread wakes the window, and so ends before it.
+  // The refinement thread and the fetcher's wake the window, and so end before it.
   std::optional<ViewerWindow> window_;
-  std::optional<PixelCounter> counter_;  // GL: ends before the window
-  HttpFetcher http_;
-  Receiver receiver_;
+  std::optional<SceneDrawing> drawing_;  // GL: ends before the window
+  HttpFetcher http_{fetcherOptions()};
+  std::optional<RefinementThread> thread_;
   std::optional<TraceWriter> trace_;
-  std::vector<uint32_t> pixels_;
-  std::optional<uint64_t> countedAt_;  // the mesh's change count
-  Clock::time_point rankedAt_;
-  Clock::time_point resumedAt_;
+  std::optional<ScriptPlayer> script_;
+  std::optional<Error> failure_;  // of a turn
+  SceneStatus status_;            // of this turn
+  SceneStatus final_;             // after the last one
+  PanelNumbers numbers_{options_};
+  ViewPrediction prediction_;
+  double lookedAhead_ = 0;                // seconds
+  const RenderTarget* target_ = nullptr;  // the window's, as it was drawn last
+  Bounds bounds_;                         // that it was drawn with
+  uint64_t tracedAnswers_ = 0;
 };
 
 }  // namespace

@@ -62,6 +62,7 @@ const char* subjectOf(unsigned context) {
 
 class TracingDecoder {
  public:
+  static constexpr bool kDecodes = true;
   TracingDecoder(const CodeTables& tables, CutDecoder inner, std::vector<NodeRecord::Decision>& out)
       : chances_(tables.cutChances), inner_(inner), out_(out) {}
 
@@ -136,8 +137,9 @@ void traceCut(NodeRecord& out, const SelectivelyRefinedMesh& mesh, NodeIndex nod
                        out.decisions);
   RingWalkSpace space;
   const RingCut cut = walkRing(
-      std::span<const NodeId>(entries), [&](uint32_t gap) { return mesh.keyOf(ring[gap] / 3); },
-      positionOf, CutFrame(out.position, out.delta, out.normal), coder, RingCut{}, space);
+      std::span<const NodeId>(entries),
+      [&](uint32_t gap) { return mesh.keyOf(HalfEdgeMesh::faceOf(ring[gap])); }, positionOf,
+      CutFrame(out.position, out.delta, out.normal), coder, RingCut{}, space);
   out.leftEntry = cut.left;
   out.rightEntry = cut.right;
   out.leftFirst = cut.leftFirst;

@@ -21,15 +21,9 @@ class BitReader {
   }
 
   // The next `count` bits (0..57) without consuming them; zeros beyond the end.
-  [[nodiscard]] uint64_t peek(unsigned count) const {
-    if (count == 0) return 0;
-    const uint64_t word = load(position_ >> 3) << (position_ & 7);
-    uint64_t value = word >> (64 - count);
-    if (position_ + count > end_) {
-      const uint64_t missing = position_ + count - end_;
-      value = missing >= count ? 0 : value >> missing << missing;
-    }
-    return value;
+  [[nodiscard]] uint64_t peek(unsigned count) {
+    if (count > ready_) refill();
+    return count == 0 ? 0 : window_ >> (64 - count);
   }
   uint64_t read(unsigned count) {
     const uint64_t value = peek(count);
@@ -40,9 +34,25 @@ class BitReader {
   void skip(uint64_t count) {
     if (count > end_ - position_) {
       fail();
-    } else {
-      position_ += count;
+      return;
     }
+    position_ += count;
+    if (count < ready_) {
+      window_ <<= count;
+      ready_ -= static_cast<unsigned>(count);
+    } else {
+      ready_ = 0;
+    }
+  }
+
+  // The next bits, from the highest one on, and how many they are: 57 or all that are left at
+  // least.
+  [[nodiscard]] uint64_t window() {
+    if (ready_ < 57) refill();
+    return window_;
+  }
+  [[nodiscard]] unsigned windowBits() const {
+    return static_cast<unsigned>(ready_ < left() ? ready_ : left());
   }
 
   [[nodiscard]] uint64_t position() const { return position_; }
@@ -53,9 +63,18 @@ class BitReader {
   void fail() {
     overrun_ = true;
     position_ = end_;
+    window_ = 0;
+    ready_ = 64;
   }
 
  private:
+  void refill() {
+    const auto inByte = static_cast<unsigned>(position_ & 7);
+    window_ = load(position_ >> 3) << inByte;
+    ready_ = 64 - inByte;
+    const uint64_t left = end_ - position_;
+    if (left < 64) window_ = left == 0 ? 0 : window_ >> (64 - left) << (64 - left);
+  }
   // Eight bytes from byte `at`, big-endian, zeros beyond the span.
   [[nodiscard]] uint64_t load(uint64_t at) const {
     if (at + 8 <= bytes_.size()) {
@@ -72,7 +91,38 @@ class BitReader {
   std::span<const uint8_t> bytes_;
   uint64_t position_ = 0;
   uint64_t end_ = 0;
+  uint64_t window_ = 0;  // the next bits, from the highest one on, zeros beyond the end
+  unsigned ready_ = 0;   // how many of them
   bool overrun_ = false;
+};
+
+// Reads as BitReader does, from a window of one: in registers, without looking at memory. Whoever
+// uses it asks in the end whether the window sufficed, and else takes the BitReader.
+class BitWindow {
+ public:
+  explicit BitWindow(BitReader& in) : bits_(in.window()), valid_(in.windowBits()) {}
+  [[nodiscard]] uint64_t peek(unsigned count) const {  // 0..63
+    return count == 0 ? 0 : bits_ >> (64 - count);
+  }
+  uint64_t read(unsigned count) {
+    const uint64_t value = peek(count);
+    skip(count);
+    return value;
+  }
+  bool readBit() { return read(1) != 0; }
+  void skip(unsigned count) {  // 0..63
+    bits_ <<= count;
+    used_ += count;
+  }
+  void fail() { used_ = UINT32_MAX / 2; }
+
+  [[nodiscard]] unsigned used() const { return used_; }
+  [[nodiscard]] bool sufficed() const { return used_ <= valid_; }
+
+ private:
+  uint64_t bits_;
+  unsigned valid_;
+  unsigned used_ = 0;
 };
 
 }  // namespace meshfront

@@ -159,20 +159,15 @@ void HuffmanCode::build() {
     for (auto& entry : table_) entry = {static_cast<uint16_t>(only_), 0};
 }
 
-uint32_t HuffmanCode::readLong(BitReader& in) const {
-  if (!order_.empty()) {
-    const auto window = static_cast<uint32_t>(in.peek(kMaxHuffmanLength));
-    for (unsigned length = kTableBits + 1; length <= kMaxHuffmanLength; ++length) {
-      const uint32_t code = window >> (kMaxHuffmanLength - length);
-      const uint32_t index = firstIndex_[length] + code - firstCode_[length];
-      if (code >= firstCode_[length] && index < firstIndex_[length + 1]) {
-        in.skip(length);
-        return order_[index];
-      }
-    }
+HuffmanCode::Entry HuffmanCode::longEntry(uint32_t window) const {
+  if (order_.empty()) return {};
+  for (unsigned length = kTableBits + 1; length <= kMaxHuffmanLength; ++length) {
+    const uint32_t code = window >> (kMaxHuffmanLength - length);
+    const uint32_t index = firstIndex_[length] + code - firstCode_[length];
+    if (code >= firstCode_[length] && index < firstIndex_[length + 1])
+      return {order_[index], static_cast<uint16_t>(length)};
   }
-  in.fail();
-  return 0;
+  return {};
 }
 
 }  // namespace meshfront

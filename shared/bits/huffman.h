@@ -28,25 +28,36 @@ class HuffmanCode {
   [[nodiscard]] bool has(size_t symbol) const;
   [[nodiscard]] unsigned length(size_t symbol) const { return lengths_[symbol]; }
 
+  // Bytes held beside the object itself.
+  [[nodiscard]] size_t memoryBytes() const {
+    return lengths_.capacity() + codes_.capacity() * sizeof(uint16_t) +
+           table_.capacity() * sizeof(Entry) + order_.capacity() * sizeof(uint16_t);
+  }
+
   void write(BitWriter& out, size_t symbol) const { out.write(codes_[symbol], lengths_[symbol]); }
   // Fails the reader (sticky) where there is no such code; then returns 0.
-  [[nodiscard]] uint32_t read(BitReader& in) const {
-    const Entry entry = table_[in.peek(kTableBits)];
-    if (entry.length <= kTableBits) {
-      in.skip(entry.length);
-      return entry.symbol;
+  template <typename Reader>
+  [[nodiscard]] uint32_t read(Reader& in) const {
+    Entry entry = table_[in.peek(kTableBits)];
+    if (entry.length > kTableBits)
+      entry = longEntry(static_cast<uint32_t>(in.peek(kMaxHuffmanLength)));
+    if (entry.length > kMaxHuffmanLength) {
+      in.fail();
+      return 0;
     }
-    return readLong(in);
+    in.skip(entry.length);
+    return entry.symbol;
   }
 
  private:
   static constexpr unsigned kTableBits = 9;
   struct Entry {
     uint16_t symbol = 0;
-    uint16_t length = kTableBits + 1;  // beyond the table: readLong()
+    uint16_t length = kMaxHuffmanLength + 1;  // beyond the table: longEntry()
   };
   void build();
-  [[nodiscard]] uint32_t readLong(BitReader& in) const;
+  // For the next kMaxHuffmanLength bits; a length beyond that where there is no such code.
+  [[nodiscard]] Entry longEntry(uint32_t window) const;
 
   std::vector<uint8_t> lengths_;
   std::vector<uint16_t> codes_;

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "shared/bits/bit_reader.h"
+
 namespace meshfront {
 namespace {
 
@@ -14,6 +16,14 @@ uint64_t reversed(uint64_t value, unsigned length) {
   return out;
 }
 
+// The bits of a word in the other order.
+uint64_t reversed64(uint64_t v) {
+  v = (v >> 1 & 0x5555555555555555ULL) | (v & 0x5555555555555555ULL) << 1;
+  v = (v >> 2 & 0x3333333333333333ULL) | (v & 0x3333333333333333ULL) << 2;
+  v = (v >> 4 & 0x0F0F0F0F0F0F0F0FULL) | (v & 0x0F0F0F0F0F0F0F0FULL) << 4;
+  return __builtin_bswap64(v);
+}
+
 void carry(std::vector<uint8_t>& digits) {
   for (size_t i = digits.size(); i-- > 0 && ++digits[i] == 0;) {
   }
@@ -21,27 +31,22 @@ void carry(std::vector<uint8_t>& digits) {
 
 }  // namespace
 
-uint64_t DecisionReader::take(unsigned count) {
-  uint64_t value = 0;
-  for (unsigned done = 0; done < count;) {
-    if (begin_ >= end_) return value << (count - done);
-    // As many bits as the current byte has.
-    const uint64_t at = backward_ ? end_ - 1 : begin_;
-    const unsigned inByte = static_cast<unsigned>(at & 7);
-    const unsigned here = backward_ ? inByte + 1 : 8 - inByte;
-    const auto bits =
-        static_cast<unsigned>(std::min<uint64_t>({here, count - done, end_ - begin_}));
-    const unsigned byte = bytes_[at >> 3];
+// Fewer than 8 bits are left then; a word has room for 56 more.
+void DecisionReader::refill() {
+  const auto count = static_cast<unsigned>(std::min<uint64_t>(56, end_ - begin_));
+  if (count > 0) {
+    const uint64_t from = backward_ ? end_ - count : begin_;
+    uint64_t bits = BitReader(bytes_, from, from + count).peek(count);
     if (backward_) {
-      for (unsigned i = 0; i < bits; ++i) value = value << 1 | (byte >> (7 - inByte + i) & 1);
-      end_ -= bits;
+      bits = reversed64(bits) >> (64 - count);
+      end_ -= count;
     } else {
-      value = value << bits | (byte >> (here - bits) & ((1U << bits) - 1));
-      begin_ += bits;
+      begin_ += count;
     }
-    done += bits;
+    next_ |= bits << (64 - count) >> ready_;
+    ready_ += count;
   }
-  return value;
+  if (begin_ >= end_) ready_ = 64;  // zeros behind the far end are as good as bits
 }
 
 void DecisionWriter::encode(bool bit, unsigned chanceOfZero) {

@@ -32,19 +32,22 @@ class DecisionReader {
   // Reads bits [begin, end) of `bytes`, from `end` down if backward. begin <= end <= all bits.
   DecisionReader(std::span<const uint8_t> bytes, uint64_t begin, uint64_t end, bool backward)
       : bytes_(bytes), begin_(begin), end_(end), backward_(backward) {
-    value_ = take(32);
+    refill();
+    value_ = next_ >> 32;
+    advance(32);
   }
   bool decide(unsigned chanceOfZero) {
     const uint64_t bound = (range_ >> kChanceBits) * chanceOfZero;
     const bool bit = value_ >= bound;
-    if (bit) {
-      value_ -= bound;
-      range_ -= bound;
-    } else {
-      range_ = bound;
-    }
-    while (range_ < kLeastRange) {
-      value_ = value_ << 8 | take(8);
+    // Without a branch, since nobody can guess it.
+    const uint64_t whenSet = bit ? ~uint64_t{0} : 0;
+    value_ -= bound & whenSet;
+    range_ = bound + ((range_ - 2 * bound) & whenSet);
+    // A chance of 1 in 64 at least leaves a range that one step makes large enough.
+    if (range_ < kLeastRange) {
+      if (ready_ < 8) refill();
+      value_ = value_ << 8 | next_ >> 56;
+      advance(8);
       range_ <<= 8;
     }
     return bit;
@@ -55,14 +58,19 @@ class DecisionReader {
   static constexpr uint64_t kWholeRange = uint64_t{1} << 32;
   static constexpr uint64_t kLeastRange = uint64_t{1} << 24;
 
-  // The next `count` bits, at most 32; zeros behind the far end.
-  uint64_t take(unsigned count);
+  void advance(unsigned count) {
+    next_ <<= count;
+    ready_ -= count;
+  }
+  void refill();
 
   std::span<const uint8_t> bytes_;
-  uint64_t begin_ = 0;
+  uint64_t begin_ = 0;  // of the bits that are not in next_
   uint64_t end_ = 0;
+  uint64_t next_ = 0;  // from the highest bit on, zeros behind `ready_`
   uint64_t value_ = 0;
   uint64_t range_ = kWholeRange;
+  unsigned ready_ = 0;
   bool backward_ = false;
 };
 

@@ -110,14 +110,20 @@ void orbit(Camera& camera, double turn, double lift) {
   camera.eye = camera.target + fromTarget;
 }
 
-void pan(Camera& camera, glm::dvec2 pixels, int pictureHeight) {
+void pan(Camera& camera, glm::dvec2 pixels, int pictureHeight, std::optional<double> distance) {
   const ViewAxes axes = viewAxes(camera);
-  const double height =
-      2 * std::tan(0.5 * camera.verticalFov) * glm::length(camera.target - camera.eye);
+  const double along = distance.value_or(glm::length(camera.target - camera.eye));
+  const double height = 2 * std::tan(0.5 * camera.verticalFov) * along;
   const double perPixel = height / std::max(1, pictureHeight);
   const glm::dvec3 move = (axes.right * pixels.x + axes.upward * pixels.y) * -perPixel;
   camera.eye += move;
   camera.target += move;
+}
+
+void roll(Camera& camera, double angle) {
+  const ViewAxes axes = viewAxes(camera);
+  // The picture turns one way when the camera turns the other.
+  camera.up = rotated(glm::normalize(camera.up), axes.forward, -angle);
 }
 
 void zoomTo(Camera& camera, const glm::dvec3& point, double factor) {

@@ -7,6 +7,7 @@
 #include <glm/mat4x4.hpp>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
+#include <optional>
 
 #include "shared/camera/bounds.h"
 
@@ -69,9 +70,12 @@ struct Projection {
 // Turntable around the target: `turn` about the up vector, `lift` over the horizon (radians; a
 // positive turn moves the eye to its right, a positive lift upward). Stops short of the poles.
 void orbit(Camera& camera, double turn, double lift);
-// Moves eye and target so that what lies at the target's distance follows the cursor; `pixels` to
-// the right and up, in a picture `pictureHeight` pixels high.
-void pan(Camera& camera, glm::dvec2 pixels, int pictureHeight);
+// Moves eye and target so that what lies `distance` along the view, else at the target's distance,
+// follows the cursor; `pixels` to the right and up, in a picture `pictureHeight` pixels high.
+void pan(Camera& camera, glm::dvec2 pixels, int pictureHeight,
+         std::optional<double> distance = std::nullopt);
+// Turns the picture clockwise around its middle, radians.
+void roll(Camera& camera, double angle);
 // Scales the view's distance to `point` by `factor` (below 1: nearer); the point stays where it is
 // in the picture.
 void zoomTo(Camera& camera, const glm::dvec3& point, double factor);

@@ -1,5 +1,7 @@
 #include "shared/codec/answer.h"
 
+#include <algorithm>
+
 #include "shared/bits/crc32c.h"
 #include "shared/codec/subtree_reader.h"
 
@@ -13,6 +15,7 @@ Result<std::vector<RecordEntry>> parseAnswer(
   if (!content) return tl::unexpected(content.error());
   BitReader in(*content);
   std::vector<RecordEntry> entries;
+  entries.reserve(std::min(wanted.size(), maxEntries));
   // A record is free of charge only in degenerate tables; this bounds the entries by the bytes.
   uint64_t limit = in.left() + wanted.size() + 1;
   const bool isLimited = maxEntries < limit;
@@ -21,11 +24,13 @@ Result<std::vector<RecordEntry>> parseAnswer(
     return expansion.significance ? level <= *expansion.significance
                                   : generation <= expansion.levels;
   };
+  std::vector<PendingRecord> pending;
   for (const NodeId& node : wanted) {
     if (isLimited && entries.size() >= limit) break;
     const auto level = levelOf(node);
     if (!level) return fail("answer: the level of a requested node is not known");
-    if (entries.size() >= limit || !readSubtree(in, tables, node, *level, descend, limit, entries))
+    if (entries.size() >= limit ||
+        !readSubtree(in, tables, node, *level, descend, limit, pending, entries))
       return fail("answer: fewer records than asked for, or damaged ones");
   }
   if (isLimited && entries.size() >= limit)

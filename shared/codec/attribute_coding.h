@@ -42,6 +42,14 @@ struct AttributeTables {
   std::array<HuffmanCode, kAttributeLevelContexts> normal;  // class x * normalClasses() + class y
 
   [[nodiscard]] unsigned normalClasses() const { return 2 * layout.normalBits; }
+  [[nodiscard]] size_t memoryBytes() const {  // held beside the object itself
+    size_t bytes = alpha.memoryBytes();
+    for (const auto& code : green) bytes += code.memoryBytes();
+    for (const auto& code : red) bytes += code.memoryBytes();
+    for (const auto& code : blue) bytes += code.memoryBytes();
+    for (const auto& code : normal) bytes += code.memoryBytes();
+    return bytes;
+  }
 };
 
 // Untrusted.

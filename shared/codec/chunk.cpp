@@ -70,9 +70,11 @@ Result<Chunk> decodeChunk(std::span<const uint8_t> bytes, const CodeTables& tabl
   if (!outside) return tl::unexpected(outside.error());
 
   const unsigned band = chunk.band;
+  chunk.entries.reserve(std::min<uint64_t>(count, 2 * kRecordsPerChunk));  // as far as it is likely
   const auto sameBand = [band](unsigned, unsigned level) { return level == band; };
+  std::vector<PendingRecord> pending;
   for (const NodeId& node : *outside)
-    if (!readSubtree(in, tables, node, band, sameBand, count, chunk.entries))
+    if (!readSubtree(in, tables, node, band, sameBand, count, pending, chunk.entries))
       return fail("chunk: damaged records");
   if (chunk.entries.size() != count) return fail("chunk: wrong record count");
   if (in.left() >= 8 || in.read(static_cast<unsigned>(in.left())) != 0)

@@ -62,6 +62,14 @@ struct CodeTables {
     return symbol;
   }
   [[nodiscard]] size_t headerSymbols() const { return headerSymbol(4, 0); }
+  [[nodiscard]] size_t memoryBytes() const {  // held beside the object itself
+    size_t bytes = attributes.memoryBytes();
+    for (const auto& lengths : cutLengths) bytes += lengths.capacity() * sizeof(uint16_t);
+    for (const auto* codes : {&header, &levels, &levelPairs, &classes})
+      for (const auto& code : *codes) bytes += code.memoryBytes();
+    for (const auto& code : residual) bytes += code.memoryBytes();
+    return bytes;
+  }
   // The residual takes up to two bits more than a difference of two grid positions.
   [[nodiscard]] unsigned residualClasses() const { return valueClasses + 4; }
 };

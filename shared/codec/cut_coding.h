@@ -16,6 +16,7 @@ namespace meshfront {
 // Reads decisions from a cut region. Untrusted; any bits give some decisions.
 class CutDecoder {
  public:
+  static constexpr bool kDecodes = true;
   CutDecoder(const CodeTables& tables, std::span<const uint8_t> bytes, uint64_t begin, uint64_t end)
       : chances_(tables.cutChances), in_(bytes, begin, end) {}
 
@@ -36,6 +37,7 @@ struct CutDecision {
 // Collects decisions, those of one direction in reading order.
 class CutRecorder {
  public:
+  static constexpr bool kDecodes = false;
   explicit CutRecorder(std::vector<CutDecision>& out) : out_(out) { out_.clear(); }
   bool decide(unsigned context, bool chosen) { return add(context, chosen, false); }
   bool decideBackward(unsigned context, bool chosen) { return add(context, chosen, true); }

@@ -18,13 +18,14 @@ uint64_t integerSqrt(uint64_t value) {
   return root;
 }
 
+// Halves away from zero. The numerator is below 2^45 and the denominator below 2^31, or below 2^37
+// and 2^15: then a double holds the numerator, and its quotient is never rounded across an integer.
 int64_t divideRounded(int64_t numerator, int64_t denominator) {
-  if (denominator < 0) {
-    numerator = -numerator;
-    denominator = -denominator;
-  }
-  return numerator >= 0 ? (numerator + denominator / 2) / denominator
-                        : -((-numerator + denominator / 2) / denominator);
+  const int64_t divisor = std::llabs(denominator);
+  const int64_t half = divisor / 2;
+  const auto magnitude = static_cast<int64_t>(static_cast<double>(std::llabs(numerator) + half) /
+                                              static_cast<double>(divisor));
+  return (numerator < 0) != (denominator < 0) ? -magnitude : magnitude;
 }
 
 struct Scaled {
@@ -55,13 +56,6 @@ PredictedNormal normalised(const Vector& v, uint64_t length) {
 }
 
 }  // namespace
-
-unsigned mainAxis(const PredictedNormal& normal) {
-  unsigned axis = 0;
-  for (unsigned i = 1; i < 3; ++i)
-    if (std::abs(normal[i]) > std::abs(normal[axis])) axis = i;
-  return axis;
-}
 
 int32_t predictedAlong(const PredictedNormal& normal, unsigned axis, int32_t deltaB,
                        int32_t deltaC) {

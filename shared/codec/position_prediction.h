@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <cstdlib>
 #include <span>
 #include <vector>
 
@@ -17,7 +18,11 @@ using PredictedNormal = std::array<int16_t, 3>;
 inline constexpr int32_t kNormalLength = 1 << 14;
 
 // The axis of the largest component (the first of equals); b and c follow it cyclically.
-[[nodiscard]] unsigned mainAxis(const PredictedNormal& normal);
+[[nodiscard]] inline unsigned mainAxis(const PredictedNormal& normal) {
+  const std::array<int, 3> size{std::abs(normal[0]), std::abs(normal[1]), std::abs(normal[2])};
+  const unsigned axis = size[1] > size[0] ? 1 : 0;
+  return size[2] > size[axis] ? 2 : axis;
+}
 
 // The d_a that makes d perpendicular to the normal, rounded to nearest, halves away from zero.
 [[nodiscard]] int32_t predictedAlong(const PredictedNormal& normal, unsigned axis, int32_t deltaB,

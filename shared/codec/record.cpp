@@ -15,11 +15,12 @@ uint32_t levelPairSymbol(const Record& record, unsigned level) {
   return (record.leftLevel - level) * kLevelCount + record.rightLevel - level;
 }
 
-Record readRecord(BitReader& in, const CodeTables& tables, unsigned level) {
-  Record record;
-  const uint64_t begin = in.position();
-  const unsigned context = tables.levelContext(level);
+namespace {
 
+// Everything in front of attributes and cut region; returns the cut region's class.
+template <typename Reader>
+uint32_t readHead(Reader& in, const CodeTables& tables, unsigned level, Record& record) {
+  const unsigned context = tables.levelContext(level);
   uint32_t header = tables.header[context].read(in);
   unsigned leafFlags = 0;
   while (leafFlags < 3 && header >= tables.cutLengths[leafFlags].size())
@@ -48,15 +49,31 @@ Record readRecord(BitReader& in, const CodeTables& tables, unsigned level) {
   record.deltaB = readValue(in, classB);
   record.deltaC = readValue(in, classC);
   record.residualA = readValue(in, classA);
-  if (tables.attributes.layout.any())
-    record.attributes = readAttributes(in, tables.attributes, context);
+  return header;
+}
 
-  const auto& lengths = tables.cutLengths[leafFlags];
-  if (header >= lengths.size()) {
+}  // namespace
+
+Record readRecord(BitReader& in, const CodeTables& tables, unsigned level) {
+  Record record;
+  const uint64_t begin = in.position();
+  BitWindow window(in);
+  uint32_t cutClass = readHead(window, tables, level, record);
+  if (window.sufficed()) {
+    in.skip(window.used());
+  } else {  // a very long one, or a damaged one
+    record = Record();
+    cutClass = readHead(in, tables, level, record);
+  }
+  if (tables.attributes.layout.any())
+    record.attributes = readAttributes(in, tables.attributes, tables.levelContext(level));
+
+  const auto& lengths = tables.cutLengths[leafFlagsOf(record)];
+  if (cutClass >= lengths.size()) {
     in.fail();
   } else {
     record.cutBegin = static_cast<uint32_t>(in.position() - begin);
-    in.skip(lengths[header]);
+    in.skip(lengths[cutClass]);
     record.cutEnd = static_cast<uint32_t>(in.position() - begin);
   }
   if (in.overrun()) record.cutBegin = record.cutEnd = 0;

@@ -64,7 +64,7 @@ struct RingCut {
 
 // Working space of the walk, kept between calls so that it allocates nothing.
 struct RingWalkSpace {
-  std::vector<int> parting;      // [i]: between entries i and i + 1 of the rotated ring
+  std::vector<int> parting;      // [i]: between entries i and i + 1, twice round
   std::vector<uint32_t> starts;  // of runs
 };
 
@@ -96,28 +96,31 @@ uint32_t codeEven(Coder& coder, uint32_t count, uint32_t chosen) {
 
 // Walks the ring. `entries`: at least two, cyclically adjacent ones different, none an ancestor of
 // another. `gapKey(i)` gives the FaceKey of gap i; `positionOf(i, depth)` the position of entry i's
-// ancestor-or-self at that depth, nothing for a virtual vertex (optional<GridPosition>).
+// ancestor-or-self at that depth, an optional or a pointer, without value for a virtual vertex.
 // `Coder` codes decisions: bool decide(context, chosen) forward, bool decideBackward(context,
-// chosen). An encoder is given `target` (entries) and returns `chosen`; a decoder ignores both.
+// chosen). An encoder is given `target` (entries) and returns `chosen`; a decoder, which says so by
+// kDecodes, ignores both.
 template <typename GapKey, typename PositionOf, typename Coder>
 RingCut walkRing(std::span<const NodeId> entries, const GapKey& gapKey,
                  const PositionOf& positionOf, const CutFrame& frame, Coder& coder, RingCut target,
                  RingWalkSpace& space) {
   const auto size = static_cast<uint32_t>(entries.size());
-  auto& parting = space.parting;
-  auto& starts = space.starts;
+  if (space.starts.size() < size) {
+    space.starts.resize(2 * size_t{size});
+    space.parting.resize(4 * size_t{size});
+  }
 
   // The earliest parting around the ring and, among its gaps, the smallest face.
   int earliest = static_cast<int>(kMaxDepth) + 1;
-  parting.resize(size);
   for (uint32_t i = 0; i < size; ++i) {
-    parting[i] = partingDepth(entries[i], entries[i + 1 == size ? 0 : i + 1]);
-    earliest = std::min(earliest, parting[i]);
+    const int depth = partingDepth(entries[i], entries[i + 1 == size ? 0 : i + 1]);
+    space.parting[i] = space.parting[i + size] = depth;
+    earliest = std::min(earliest, depth);
   }
   uint32_t smallest = size;
   FaceKey smallestKey;
   for (uint32_t i = 0; i < size; ++i) {
-    if (parting[i] != earliest) continue;
+    if (space.parting[i] != earliest) continue;
     const FaceKey key = gapKey(i);
     if (smallest == size || key < smallestKey) {
       smallest = i;
@@ -126,7 +129,9 @@ RingCut walkRing(std::span<const NodeId> entries, const GapKey& gapKey,
   }
   // From here on positions are counted from the entry behind that gap.
   const uint32_t origin = smallest + 1 == size ? 0 : smallest + 1;
-  std::rotate(parting.begin(), parting.begin() + origin, parting.end());
+  const int* const parting = space.parting.data() + origin;
+  uint32_t* const starts = space.starts.data();
+  uint32_t runs = 0;  // in `starts`
   const auto toPosition = [&](uint32_t entry) {
     return entry >= origin ? entry - origin : entry + size - origin;
   };
@@ -142,24 +147,25 @@ RingCut walkRing(std::span<const NodeId> entries, const GapKey& gapKey,
   };
   // Fills `starts` with the sub-runs of a run, given the depth at which they part.
   const auto cut = [&](Run run, int depth) {
-    starts.clear();
-    starts.push_back(run.begin);
-    for (uint32_t i = run.begin; i + 1 < run.end; ++i)
-      if (parting[i] == depth) starts.push_back(i + 1);
-    return static_cast<uint32_t>(starts.size());
+    starts[0] = run.begin;
+    runs = 1;
+    for (uint32_t i = run.begin; i + 1 < run.end; ++i) {
+      starts[runs] = i + 1;
+      runs += parting[i] == depth ? 1 : 0;
+    }
   };
   const auto earliestIn = [&](Run run) {
     int depth = parting[run.begin];
     for (uint32_t i = run.begin + 1; i + 1 < run.end; ++i) depth = std::min(depth, parting[i]);
     return depth;
   };
-  const auto holder = [&](uint32_t position) {
-    const auto above = std::upper_bound(starts.begin(), starts.end(), position);
-    return above == starts.begin() ? 0 : static_cast<uint32_t>(above - starts.begin() - 1);
+  const auto holder = [&](uint32_t position) -> uint32_t {
+    if constexpr (Coder::kDecodes) return 0;
+    const auto* above = std::upper_bound(starts, starts + runs, position);
+    return above == starts ? 0 : static_cast<uint32_t>(above - starts - 1);
   };
   const auto runAt = [&](Run whole, uint32_t number) {
-    const bool last = number + 1 == starts.size();
-    return Run{starts[number], last ? whole.end : starts[number + 1]};
+    return Run{starts[number], number + 1 == runs ? whole.end : starts[number + 1]};
   };
   // The place of the node that labels a sub-run.
   const auto placeOf = [&](uint32_t number, int depth) {
@@ -170,7 +176,7 @@ RingCut walkRing(std::span<const NodeId> entries, const GapKey& gapKey,
   };
 
   Run whole{0, size};
-  uint32_t runs = cut(whole, earliest);
+  cut(whole, earliest);
   uint32_t leftRun = holder(targetLeft);
   uint32_t rightRun = holder(targetRight);
   bool leftFirst = targetLeft < targetRight;
@@ -193,7 +199,7 @@ RingCut walkRing(std::span<const NodeId> entries, const GapKey& gapKey,
   while (left.begin == right.begin && !left.single()) {
     whole = left;
     const int depth = earliestIn(whole);
-    runs = cut(whole, depth);
+    cut(whole, depth);
     leftRun = holder(targetLeft);
     rightRun = holder(targetRight);
     uint32_t first = leftFirst ? leftRun : rightRun;
@@ -217,7 +223,8 @@ RingCut walkRing(std::span<const NodeId> entries, const GapKey& gapKey,
     // t's faces lie clockwise of l and counter-clockwise of r.
     while (!left.single()) {
       const int depth = earliestIn(left);
-      const uint32_t last = cut(left, depth) - 1;
+      cut(left, depth);
+      const uint32_t last = runs - 1;
       const uint32_t wanted = holder(targetLeft);
       uint32_t at = 0;
       for (auto near = placeOf(0, depth); at < last; ++at) {
@@ -229,7 +236,8 @@ RingCut walkRing(std::span<const NodeId> entries, const GapKey& gapKey,
     }
     while (!right.single()) {
       const int depth = earliestIn(right);
-      uint32_t at = cut(right, depth) - 1;
+      cut(right, depth);
+      uint32_t at = runs - 1;
       const uint32_t wanted = holder(targetRight);
       for (auto near = placeOf(at, depth); at > 0; --at) {
         const auto far = placeOf(at - 1, depth);

@@ -11,20 +11,24 @@
 
 namespace meshfront {
 
+// A node whose record is still to be read; readSubtree()'s working space.
+struct PendingRecord {
+  NodeId id;
+  unsigned level = 0;
+  unsigned generation = 0;
+};
+
 // Appends to `out` the entry of `top`, then of each descendant for which, like for all nodes
 // between, `descend(generation, level)` holds (generation 1 = a child of top), until `out` holds
 // `limit` entries. Leaves have no records. Untrusted: false where the bits are no records.
 template <typename Descend>
 bool readSubtree(BitReader& in, const CodeTables& tables, const NodeId& top, unsigned level,
-                 const Descend& descend, uint64_t limit, std::vector<RecordEntry>& out) {
-  struct Pending {
-    NodeId id;
-    unsigned level = 0;
-    unsigned generation = 0;
-  };
-  std::vector<Pending> stack{{top, level, 0}};
+                 const Descend& descend, uint64_t limit, std::vector<PendingRecord>& stack,
+                 std::vector<RecordEntry>& out) {
+  stack.clear();
+  stack.push_back({top, level, 0});
   while (!stack.empty() && out.size() < limit) {
-    const Pending node = stack.back();
+    const PendingRecord node = stack.back();
     stack.pop_back();
     const uint64_t begin = in.position();
     const Record record = readRecord(in, tables, node.level);

@@ -7,7 +7,6 @@
 #include <cstdint>
 #include <cstdlib>
 
-#include "shared/bits/bit_reader.h"
 #include "shared/bits/bit_writer.h"
 
 namespace meshfront {
@@ -30,7 +29,8 @@ namespace meshfront {
 }
 
 // Untrusted; valueClass < 2 * 25.
-inline int32_t readValue(BitReader& in, unsigned valueClass) {
+template <typename Reader>
+int32_t readValue(Reader& in, unsigned valueClass) {
   if (valueClass == 0) return 0;
   const unsigned open = openBits(valueClass);
   const uint32_t lead = valueClass < 2 ? valueClass : 2U | (valueClass & 1U);

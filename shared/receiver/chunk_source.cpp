@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "shared/receiver/cache_verdict.h"
+#include "shared/receiver/disk_cache.h"
 #include "shared/receiver/ranking.h"
 #include "shared/store/entity_tag.h"
 
@@ -14,20 +16,6 @@ constexpr uint64_t kMaxIndexBytes = uint64_t{64} << 20;
 constexpr uint64_t kIndexBytesPerChunk = 18;  // at most: a tree's number and a path
 constexpr uint64_t kIndexBytesBeside = 1'024;
 constexpr double kLongerThanMean = 1.25;
-constexpr size_t kQueuedChunks = 32;  // ranked ahead, where rankings are used up
-
-struct Wish {
-  uint32_t chunk = 0;
-  uint8_t band = 0;
-  uint64_t pixels = 0;  // of the visible roots in it
-};
-
-// As ranksBefore() for nodes: a chunk's band is the level of its nodes.
-bool ranksBefore(RankOrder order, const Wish& a, const Wish& b) {
-  if (order == RankOrder::significance && a.band != b.band) return a.band < b.band;
-  if (a.pixels != b.pixels) return a.pixels > b.pixels;
-  return a.chunk < b.chunk;
-}
 
 }  // namespace
 
@@ -35,7 +23,9 @@ ChunkSource::ChunkSource(SourceSurroundings surroundings)
     : to_(std::move(surroundings)),
       mesh_(to_.mesh),
       tables_(std::make_shared<const CodeTables>(mesh_.base().tables)),
-      budget_(to_.options.limits) {
+      budget_(to_.options.limits),
+      local_(to_),
+      ready_(to_.options.order) {
   if (mesh_.splitCount() > 0) {
     // A full one; the coarse ones, which come first, have longer records than most.
     const double perRecord =
@@ -44,6 +34,9 @@ ChunkSource::ChunkSource(SourceSurroundings surroundings)
     longestChunk_ = static_cast<uint64_t>(
         std::min({full, static_cast<double>(to_.chunkBytes), static_cast<double>(kMaxChunkBytes)}));
   }
+  if (to_.cache == nullptr) return;
+  if (const auto document = to_.cache->chunkIndex())
+    if (Result<ChunkIndex> index = decodeChunkIndex(*document)) adoptIndex(std::move(*index));
 }
 
 ChunkSource::~ChunkSource() {
@@ -58,6 +51,7 @@ void ChunkSource::requestIndex(bool bypassCaches) {
   const uint64_t chunks = std::min(to_.chunkCount, kMaxIndexBytes / kIndexBytesPerChunk);
   request.maxBodyBytes = kIndexBytesBeside + chunks * kIndexBytesPerChunk;
   request.bypassCaches = bypassCaches;
+  request.received = to_.received;
   indexRequest_ = to_.transport.send(
       std::move(request), chunkIndexInto(to_.inbox, resourceKey(to_.revision, "chunks")));
 }
@@ -82,7 +76,12 @@ void ChunkSource::takeIndex(ChunkIndexArrival arrival) {
     requestIndex(true);
     return;
   }
-  index_ = std::move(*arrival.index);
+  if (to_.cache != nullptr) to_.cache->keepChunkIndex(arrival.response.body);
+  adoptIndex(std::move(*arrival.index));
+}
+
+void ChunkSource::adoptIndex(ChunkIndex index) {
+  index_ = std::move(index);
   for (size_t band = 0; band < index_->firstNodes.size(); ++band) {
     for (const NodeId& first : index_->firstNodes[band]) {
       firstNodes_.push_back(first);
@@ -104,74 +103,28 @@ std::optional<uint32_t> ChunkSource::chunkOf(NodeIndex node) {
   return chunk;
 }
 
-// --- what to ask for -----------------------------------------------------------------------------
-
-void ChunkSource::rank(std::span<const uint32_t> pixels) {
-  if (!to_.progress.completing) forgetPlans();
-  std::vector<Candidate> visible = visibleCandidates(mesh_, pixels, {});
-  to_.progress.see(visible.size(), idle(), to_.options, to_.statistics);
-  if (index_ && !to_.progress.completing) planView(visible);
-}
-
-void ChunkSource::planView(std::span<const Candidate> visible) {
-  forgetPlans();
-  std::vector<uint64_t> pixels(firstNodes_.size());
-  std::vector<Wish> wishes;
-  for (const Candidate& candidate : visible) {
-    const std::optional<uint32_t> chunk = chunkOf(candidate.node);
-    if (!chunk) return;
-    if (held_.has(*chunk)) {
-      ready_.push_back({candidate.node, *chunk});
-      continue;
-    }
-    waiting_.push_back({candidate.node, *chunk});
-    if (underWay_[*chunk] != 0) continue;
-    if (pixels[*chunk] == 0) wishes.push_back({*chunk, bands_[*chunk], 0});
-    pixels[*chunk] += candidate.pixels;
-  }
-  for (Wish& wish : wishes) wish.pixels = pixels[wish.chunk];
-  const RankOrder order = to_.options.order;
-  std::sort(wishes.begin(), wishes.end(),
-            [order](const Wish& a, const Wish& b) { return ranksBefore(order, a, b); });
-  if (!to_.options.freshRanking && wishes.size() > kQueuedChunks) wishes.resize(kQueuedChunks);
-  for (const Wish& wish : wishes) queue_.push_back(wish.chunk);
-}
-
-// What no view asked for, in the order of the bands.
-void ChunkSource::planRest() {
-  forgetPlans();
-  restPlanned_ = true;
-  for (uint32_t chunk = 0; chunk < firstNodes_.size(); ++chunk)
-    if (!held_.has(chunk) && underWay_[chunk] == 0) queue_.push_back(chunk);
-  for (const Candidate& candidate : allCandidates(mesh_, {})) {
-    const std::optional<uint32_t> chunk = chunkOf(candidate.node);
-    if (!chunk) return;
-    if (held_.has(*chunk)) ready_.push_back({candidate.node, *chunk});
-  }
-}
-
-void ChunkSource::forgetPlans() {
-  queue_.clear();
-  queueNext_ = 0;
-  waiting_.clear();
-  ready_.clear();
-  readyNext_ = 0;
-  restPlanned_ = false;
-}
+// --- requests -----------------------------------------------------------------------------------
 
 bool ChunkSource::hasRoom() const {
-  return flights_.size() < windowOf(to_.options);
+  return flights_.size() < windowNow(to_);
 }
 
 bool ChunkSource::wantsRanking() const {
-  return index_ && hasRoom() && !to_.progress.completing && !to_.progress.ranked &&
-         readyNext_ == ready_.size() && queueNext_ == queue_.size();
+  if (!index_ && to_.cache == nullptr) return false;
+  if (to_.progress.completing || to_.progress.ranked || readyWaits()) return false;
+  return plansInRow_ > 0 || (hasRoom() && queueNext_ == queue_.size());
 }
 
 // Limits let one more chunk in.
 bool ChunkSource::mayAsk() const {
   uint64_t pending = 0;
   for (const Flight& flight : flights_) pending += flight.arrival ? 0 : 1;
+  if (to_.allowance.limited()) {
+    const auto expected = static_cast<uint64_t>(
+        std::count_if(waiting_.begin(), waiting_.end(),
+                      [this](const Place& place) { return underWay_[place.chunk] != 0; }));
+    if (to_.allowance.leftBeside(expected) == 0) return false;
+  }
   const ReceiverStatistics& statistics = to_.statistics;
   return budget_.recordsLeft(statistics.records) > 0 &&
          budget_.answerAllowed(statistics.traffic.bytesDown(), pending, longestChunk_);
@@ -179,15 +132,23 @@ bool ChunkSource::mayAsk() const {
 
 bool ChunkSource::limitReached() const {
   if (budget_.recordsLeft(to_.statistics.records) == 0) return true;
+  if (to_.allowance.left() == 0) return true;
   return queueNext_ < queue_.size() && !mayAsk();
 }
 
 bool ChunkSource::exhausted() const {
-  return restPlanned_ && queueNext_ == queue_.size();
+  return restPlanned_ && queueNext_ == queue_.size() && ready_.empty();
 }
 
 bool ChunkSource::idle() const {
-  return flights_.empty() && readyNext_ == ready_.size() && indexRequest_ == 0;
+  if (readyWaits() || indexRequest_ != 0) return false;
+  return std::all_of(flights_.begin(), flights_.end(),
+                     [](const Flight& flight) { return flight.ahead; });
+}
+
+bool ChunkSource::isFetching() const {
+  return indexRequest_ != 0 || std::any_of(flights_.begin(), flights_.end(),
+                                           [](const Flight& flight) { return !flight.arrival; });
 }
 
 void ChunkSource::request() {
@@ -195,14 +156,32 @@ void ChunkSource::request() {
     if (indexRequest_ == 0) requestIndex(indexRejected_);
     return;
   }
-  if (to_.progress.completing && !restPlanned_) planRest();
+  // What is at hand changes the wishes, and soon.
+  if (readyWaits() && plansInRow_ > 0 && plansInRow_ < kMostPlansInRow) return;
+  if (queueNext_ == queue_.size() && !aheadQueue_.empty() && to_.progress.visible == 0) {
+    requestAhead();
+    return;
+  }
+  const bool restGoesOn =
+      to_.cache != nullptr && queueNext_ == queue_.size() && flights_.empty() && ready_.empty();
+  if (to_.progress.completing && (!restPlanned_ || restGoesOn)) planRest();
   while (hasRoom() && !inTrouble() && queueNext_ < queue_.size() && mayAsk()) {
     const uint32_t chunk = queue_[queueNext_++];
-    if (!held_.has(chunk) && underWay_[chunk] == 0) send(chunk, false);
+    if (!held_.has(chunk) && underWay_[chunk] == 0) (void)send(chunk, false);
   }
 }
 
-void ChunkSource::send(uint32_t chunk, bool bypassCaches) {
+void ChunkSource::requestAhead() {
+  while (flights_.empty() && !aheadQueue_.empty()) {
+    const uint32_t chunk = aheadQueue_.front();
+    aheadQueue_.erase(aheadQueue_.begin());
+    if (held_.has(chunk)) continue;
+    if (!mayAsk()) return;
+    send(chunk, false).ahead = true;
+  }
+}
+
+ChunkSource::Flight& ChunkSource::send(uint32_t chunk, bool bypassCaches) {
   Flight& flight = flights_.emplace_back();
   flight.sequence = ++lastSequence_;
   flight.chunk = chunk;
@@ -211,10 +190,12 @@ void ChunkSource::send(uint32_t chunk, bool bypassCaches) {
   FetchRequest request;
   request.url = to_.url.chunk(to_.revision, chunk);
   request.maxBodyBytes = kMaxChunkBytes;
+  request.received = to_.received;
   request.bypassCaches = bypassCaches;
   const uint32_t key = resourceKey(to_.revision, "chunks/" + std::to_string(chunk));
   flight.id =
       to_.transport.send(std::move(request), chunkInto(to_.inbox, key, flight.sequence, tables_));
+  return flight;
 }
 
 // --- answers -------------------------------------------------------------------------------------
@@ -232,12 +213,12 @@ void ChunkSource::take(Arrival arrival) {
 }
 
 bool ChunkSource::canApply() const {
-  return readyNext_ < ready_.size() || (!flights_.empty() && flights_.front().arrival);
+  return readyWaits() || (!flights_.empty() && flights_.front().arrival);
 }
 
 bool ChunkSource::apply(size_t maxSplits) {
   if (!canApply()) return false;
-  if (readyNext_ == ready_.size() && !takeFirstFlight()) return false;
+  if (!readyWaits() && !takeFirstFlight()) return false;
   if (!applyReady(maxSplits) || inTrouble()) return false;
   to_.progress.ranked = false;
   if (to_.options.freshRanking && !to_.progress.completing) {
@@ -267,7 +248,10 @@ bool ChunkSource::takeFirstFlight() {
   ++to_.statistics.answers;
   budget_.observeAnswer(response.traffic.headerBytesDown, response.traffic.bodyBytesDown,
                         chunk->entries.size());
+  to_.statistics.answersFromCaches += cameFromCache(response) ? 1 : 0;
   longestChunk_ = std::max<uint64_t>(longestChunk_, response.body.size());
+  for (const RecordEntry& entry : chunk->entries)
+    local_.keep(entry.id, response.body, entry.bitOffset, entry.bitLength);
   held_.hold(flight.chunk, std::move(response.body), chunk->entries);
   makeReady(flight.chunk);
   return true;
@@ -289,60 +273,71 @@ void ChunkSource::makeReady(uint32_t chunk) {
   if (to_.progress.completing) {
     for (const HeldRecord& record : held_.recordsOf(chunk)) {
       const std::optional<NodeIndex> node = mesh_.find(record.id);
-      if (node && mesh_.isActive(*node)) ready_.push_back({*node, chunk});
+      if (!node || !mesh_.isActive(*node)) continue;
+      ready_.add(
+          {*node, mesh_.slot(*node), 0, static_cast<uint8_t>(mesh_.level(*node)), record.id});
     }
     return;
   }
-  const auto here = std::stable_partition(waiting_.begin(), waiting_.end(),
-                                          [chunk](const Place& p) { return p.chunk != chunk; });
-  ready_.insert(ready_.end(), here, waiting_.end());
-  waiting_.erase(here, waiting_.end());
+  std::erase_if(waiting_, [&](const Place& place) {
+    if (place.chunk != chunk) return false;
+    ready_.add(place.candidate);
+    return true;
+  });
 }
 
 // True when nothing is left to apply.
 bool ChunkSource::applyReady(size_t maxSplits) {
-  while (readyNext_ < ready_.size()) {
+  while (readyWaits()) {
     if (maxSplits == 0) return false;
     if (budget_.recordsLeft(to_.statistics.records) == 0) {
       ready_.clear();
-      readyNext_ = 0;
       return false;
     }
-    const Place place = ready_[readyNext_++];
-    if (!mesh_.isActive(place.node) || mesh_.isLeaf(place.node)) continue;
+    const Candidate candidate = ready_.takeFirst();
+    if (!mesh_.isActive(candidate.node) || mesh_.isLeaf(candidate.node)) continue;
     --maxSplits;
-    if (!split(place)) {
-      waiting_.push_back(place);
-      continue;
-    }
-    for (const NodeIndex child : {mesh_.leftChild(place.node), mesh_.leftChild(place.node) + 1}) {
-      if (mesh_.isLeaf(child)) continue;
-      const std::optional<uint32_t> chunk = index_->find(mesh_.id(child), mesh_.level(child));
-      if (chunk && held_.has(*chunk)) ready_.push_back({child, *chunk});
+    const std::optional<uint32_t> chunk =
+        index_ ? index_->find(candidate.id, mesh_.level(candidate.node)) : std::nullopt;
+    if (split(candidate.node, chunk)) {
+      to_.allowance.use();
+      addChildren(candidate);
+    } else if (chunk) {
+      waiting_.push_back({candidate, *chunk});
     }
   }
   ready_.clear();
-  readyNext_ = 0;
   return true;
 }
 
+// Children are split along with their parents: held ones all in one go, since they have been paid
+// for; of others, and where frames must be short, as many as the counts tell to be seen.
+void ChunkSource::addChildren(const Candidate& parent) {
+  const NodeIndex left = mesh_.leftChild(parent.node);
+  for (const NodeIndex node : {left, left + 1}) {
+    if (mesh_.isLeaf(node) || !isAtHand(node)) continue;
+    const Candidate child = childCandidate(mesh_, parent, node);
+    const bool paidFor = to_.options.freshRanking && isHeld(node);
+    if (paidFor || child.pixels > 0 || to_.progress.completing) ready_.add(child);
+  }
+}
+
 // False: the record is not there, or no good.
-bool ChunkSource::split(const Place& place) {
-  if (mesh_.hasRecord(place.node)) return mesh_.resplit(place.node).has_value();
-  if (!held_.has(place.chunk)) return false;  // rejected meanwhile
-  const std::optional<HeldRecord> record = held_.find(place.chunk, mesh_.id(place.node));
+bool ChunkSource::split(NodeIndex node, std::optional<uint32_t> chunk) {
+  if (!isHeld(node)) return local_.split(node);  // else damaged, and to be asked for again
+  const std::optional<HeldRecord> record = held_.find(*chunk, mesh_.id(node));
   if (!record) {
-    reject(place.chunk, "it lacks a record that the index places in it");
+    reject(*chunk, "it lacks a record that the index places in it");
     return false;
   }
   const Result<void> done =
-      mesh_.split(place.node, held_.bytesOf(place.chunk), record->bitOffset, record->bitLength);
+      mesh_.split(node, held_.bytesOf(*chunk), record->bitOffset, record->bitLength);
   if (!done) {
-    reject(place.chunk, done.error().message);
+    reject(*chunk, done.error().message);
     return false;
   }
   ++to_.statistics.records;
-  held_.countApplied(place.chunk);
+  held_.countApplied(*chunk);
   return true;
 }
 
@@ -356,7 +351,7 @@ void ChunkSource::reject(uint32_t chunk, const std::string& problem) {
     return;
   }
   rejected_[chunk] = 1;
-  send(chunk, true);
+  (void)send(chunk, true);
 }
 
 // --- the end -------------------------------------------------------------------------------------
@@ -374,7 +369,15 @@ void ChunkSource::giveUp() {
   flights_.clear();
   std::fill(rejected_.begin(), rejected_.end(), uint8_t{0});
   indexRejected_ = false;
+  aheadQueue_.clear();
   forgetPlans();
+}
+
+// Chunks that are used up are asked for again where they turn out to be needed: isAtHand().
+void ChunkSource::forgot(std::span<const NodeId>) {
+  forgetPlans();
+  aheadQueue_.clear();
+  to_.progress.ranked = false;
 }
 
 }  // namespace meshfront

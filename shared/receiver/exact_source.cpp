@@ -3,21 +3,19 @@
 #include <algorithm>
 #include <utility>
 
+#include "shared/receiver/cache_verdict.h"
 #include "shared/receiver/ranking.h"
 #include "shared/receiver/record_request.h"
 
 namespace meshfront {
-namespace {
-
-constexpr size_t kQueuedBatches = 8;        // ranked ahead, where rankings are used up
-constexpr size_t kCompletingBatch = 4'000;  // nothing is ranked any more: fewer, larger requests
-
-}  // namespace
+namespace {}  // namespace
 
 ExactSource::ExactSource(SourceSurroundings surroundings)
     : to_(std::move(surroundings)),
       mesh_(to_.mesh),
       tables_(std::make_shared<const CodeTables>(mesh_.base().tables)),
+      local_(to_),
+      plan_(to_.options.order),
       budget_(to_.options.limits) {}
 
 ExactSource::~ExactSource() {
@@ -36,6 +34,7 @@ void ExactSource::send(Flight& flight, bool bypassCaches) {
     return;
   }
   http->bypassCaches = bypassCaches;
+  http->received = to_.received;
   ++to_.statistics.requests;
   to_.statistics.idsRequested += flight.nodes.size();
   to_.statistics.setOctets += spelled.octets;
@@ -46,13 +45,17 @@ void ExactSource::send(Flight& flight, bool bypassCaches) {
 
 uint64_t ExactSource::pendingRecords() const {
   uint64_t pending = 0;
-  for (const auto& flight : flights_)
-    pending += flight->nodes.size() - std::min(flight->nodes.size(), flight->applied);
+  for (const auto& flight : flights_) {
+    const uint64_t records = flight->arrival && flight->arrival->entries
+                                 ? flight->arrival->entries->size()
+                                 : flight->mostRecords;
+    pending += records - std::min<uint64_t>(records, flight->applied);
+  }
   return pending;
 }
 
 bool ExactSource::hasRoom() const {
-  return flights_.size() < windowOf(to_.options);
+  return flights_.size() < windowNow(to_);
 }
 
 size_t ExactSource::batchSize() const {
@@ -62,73 +65,80 @@ size_t ExactSource::batchSize() const {
   uint64_t underWay = 0;
   for (const auto& flight : flights_) underWay += flight->arrival ? 0 : 1;
   const ReceiverStatistics& statistics = to_.statistics;
-  const uint64_t allowed = budget_.recordsAllowed(
-      statistics.records, statistics.traffic.bytesDown(), pendingRecords(), underWay);
-  return static_cast<size_t>(std::min<uint64_t>({wished, batchLimit_, allowed}));
+  const uint64_t pending = pendingRecords();
+  const uint64_t allowed =
+      budget_.recordsAllowed(statistics.records, statistics.traffic.bytesDown(), pending, underWay);
+  return static_cast<size_t>(
+      std::min<uint64_t>({wished, batchLimit_, allowed, to_.allowance.leftBeside(pending)}));
 }
 
 void ExactSource::request() {
+  // What is at hand changes the wishes, and soon.
+  if (planWaits() && plansInRow_ < kMostPlansInRow) return;
   while (hasRoom() && !inTrouble()) {
+    if (queueNext_ == queue_.size() && !aheadQueue_.empty() && to_.progress.visible == 0) {
+      requestAhead();
+      return;
+    }
     if (queueNext_ == queue_.size() && to_.progress.completing) refillFromRest();
-    const size_t batch = batchSize();
-    std::vector<NodeIndex> chosen;
-    while (chosen.size() < batch && queueNext_ < queue_.size()) {
-      const NodeIndex node = queue_[queueNext_++];
-      if (mesh_.isActive(node) && !isBusy(node)) chosen.push_back(node);
-    }
+    std::vector<Wish> chosen = takeBatch(queue_, queueNext_);
     if (chosen.empty()) return;
-    std::sort(chosen.begin(), chosen.end(),
-              [this](NodeIndex a, NodeIndex b) { return mesh_.id(a) < mesh_.id(b); });
-    auto request = std::make_shared<RecordRequest>();
-    for (const NodeIndex node : chosen) {
-      request->nodes.push_back(mesh_.id(node));
-      request->levels.push_back(static_cast<uint8_t>(mesh_.level(node)));
-      setBusy(node, true);
-    }
-    if (!expansionRefused_ && !budget_.limited()) request->expansion.significance = queueExpansion_;
-    Flight& flight = *flights_.emplace_back(std::make_unique<Flight>());
-    flight.sequence = ++lastSequence_;
-    flight.request = std::move(request);
-    flight.nodes = std::move(chosen);
-    send(flight, false);
+    sendBatch(std::move(chosen), false);
   }
 }
 
-// What no view asked for, coarse levels first. Descendants that share the level come along
-// (Expansion), which saves the round trip for each generation.
-void ExactSource::refillFromRest() {
-  queue_.clear();
-  queueNext_ = 0;
-  queueExpansion_.reset();
-  // Descendants arrive with a request for their ancestors: one level after the other.
+void ExactSource::requestAhead() {
   if (!flights_.empty()) return;
-  std::vector<Candidate> rest = allCandidates(mesh_, busy_);
-  restExhausted_ = rest.empty();
-  if (rest.empty()) return;
-  const size_t wanted = kQueuedBatches * kCompletingBatch;
-  keepFirst(rest, wanted, RankOrder::significance);
-  const size_t decisive = std::min(rest.size(), kCompletingBatch / 2) - 1;
-  queueExpansion_ = rest[decisive].level;
-  for (const Candidate& candidate : rest)
-    if (candidate.level <= *queueExpansion_) queue_.push_back(candidate.node);
+  size_t next = 0;
+  std::vector<Wish> chosen = takeBatch(aheadQueue_, next);
+  aheadQueue_.erase(aheadQueue_.begin(), aheadQueue_.begin() + static_cast<ptrdiff_t>(next));
+  if (chosen.empty()) {
+    aheadQueue_.clear();
+  } else {
+    sendBatch(std::move(chosen), true);
+  }
 }
 
-void ExactSource::rank(std::span<const uint32_t> pixels) {
-  markUnapplied();
-  std::vector<Candidate> visible = visibleCandidates(mesh_, pixels, busy_);
-  to_.progress.see(visible.size(), idle(), to_.options, to_.statistics);
-  if (to_.progress.completing) return;
-  queueExpansion_.reset();
-  const size_t ahead = to_.options.freshRanking ? windowOf(to_.options) : kQueuedBatches;
-  keepFirst(visible, ahead * std::max<size_t>(batchSize(), 1), to_.options.order);
-  queue_.clear();
-  queueNext_ = 0;
-  for (const Candidate& candidate : visible) queue_.push_back(candidate.node);
+std::vector<ExactSource::Wish> ExactSource::takeBatch(std::vector<Wish>& from, size_t& next) const {
+  const size_t batch = batchSize();
+  std::vector<Wish> chosen;
+  while (chosen.size() < batch && next < from.size()) {
+    const Wish wish = from[next++];
+    if (mesh_.isActive(wish.node) && !mesh_.hasRecord(wish.node) && !isBusy(wish.node))
+      chosen.push_back(wish);
+  }
+  return chosen;
 }
 
-bool ExactSource::wantsRanking() const {
-  return hasRoom() && !to_.progress.completing && !to_.progress.ranked &&
-         queueNext_ == queue_.size();
+void ExactSource::sendBatch(std::vector<Wish> chosen, bool ahead) {
+  auto request = std::make_shared<RecordRequest>();
+  request->expansion = expansionFor(chosen);
+  std::sort(chosen.begin(), chosen.end(),
+            [this](const Wish& a, const Wish& b) { return mesh_.id(a.node) < mesh_.id(b.node); });
+  Flight& flight = *flights_.emplace_back(std::make_unique<Flight>());
+  for (const Wish& wish : chosen) {
+    request->nodes.push_back(mesh_.id(wish.node));
+    request->levels.push_back(static_cast<uint8_t>(mesh_.level(wish.node)));
+    flight.nodes.push_back(wish.node);
+    setBusy(wish.node, true);
+    mesh_.setPinned(wish.node, true);
+  }
+  const uint32_t levels = request->expansion.levels;
+  to_.statistics.expanded += levels > 0 ? 1 : 0;
+  flight.mostRecords = chosen.size() * ((uint64_t{2} << levels) - 1);
+  flight.sequence = ++lastSequence_;
+  flight.request = std::move(request);
+  flight.ahead = ahead;
+  send(flight, false);
+}
+
+Expansion ExactSource::expansionFor(const std::vector<Wish>& chosen) const {
+  Expansion expansion;
+  if (expansionRefused_ || budget_.limited()) return expansion;
+  // An answer of unknown length must not run into the allowance.
+  if (queueExpansion_ && !to_.allowance.limited()) expansion.significance = queueExpansion_;
+  if (!queueExpansion_) expansion.levels = levelsByNeed(chosen);
+  return expansion;
 }
 
 // --- answers -------------------------------------------------------------------------------------
@@ -145,11 +155,12 @@ void ExactSource::take(Arrival arrival) {
 }
 
 bool ExactSource::canApply() const {
-  return !flights_.empty() && flights_.front()->arrival;
+  return planWaits() || (!flights_.empty() && flights_.front()->arrival);
 }
 
 bool ExactSource::apply(size_t maxSplits) {
   if (!canApply()) return false;
+  if (planWaits()) return applyPlan(maxSplits);
   Flight& flight = *flights_.front();
   const RecordsArrival& arrival = *flight.arrival;
   if (arrival.response.status != 200) {
@@ -163,23 +174,52 @@ bool ExactSource::apply(size_t maxSplits) {
   for (; flight.applied < arrival.entries->size(); ++flight.applied) {
     if (maxSplits == 0) return false;
     --maxSplits;
-    const RecordEntry& entry = (*arrival.entries)[flight.applied];
-    const std::optional<NodeIndex> node = mesh_.find(entry.id);
-    if (!node || (!mesh_.isActive(*node) && !mesh_.hasRecord(*node))) {
-      rejectFirstFlight("it holds the record of a node that is not on the front");
-      return false;
+    if (!applyEntry(flight, (*arrival.entries)[flight.applied])) return false;
+  }
+  finishFirstFlight();
+  return true;
+}
+
+// What is at hand, and of what comes out of it as much as the counts tell to be seen.
+bool ExactSource::applyPlan(size_t maxSplits) {
+  while (planWaits()) {
+    if (maxSplits == 0) return false;
+    const Candidate candidate = plan_.takeFirst();
+    if (!mesh_.isActive(candidate.node)) continue;
+    --maxSplits;
+    if (!local_.split(candidate.node)) continue;  // damaged: to be asked for again
+    to_.allowance.use();
+    const NodeIndex left = mesh_.leftChild(candidate.node);
+    for (const NodeIndex node : {left, left + 1}) {
+      if (mesh_.isLeaf(node) || isBusy(node) || !local_.has(node)) continue;
+      const Candidate child = childCandidate(mesh_, candidate, node);
+      if (child.pixels > 0 || to_.progress.completing) plan_.add(child);
     }
-    setBusy(*node, false);
-    if (!mesh_.isActive(*node)) continue;  // came with another answer
-    const Result<void> split =
-        mesh_.split(*node, arrival.response.body, entry.bitOffset, entry.bitLength);
+  }
+  plan_.clear();
+  to_.progress.ranked = false;
+  return true;
+}
+
+// False: the answer is no good.
+bool ExactSource::applyEntry(Flight& flight, const RecordEntry& entry) {
+  const std::vector<uint8_t>& bytes = flight.arrival->response.body;
+  const std::optional<NodeIndex> node = mesh_.find(entry.id);
+  if (node) setBusy(*node, false);
+  // A node that nobody has met is the descendant of one that has been collapsed since it was asked
+  // for.
+  if (node && mesh_.isActive(*node) && to_.allowance.left() > 0) {
+    const Result<void> split = mesh_.split(*node, bytes, entry.bitOffset, entry.bitLength);
     if (!split) {
       rejectFirstFlight(split.error().message);
       return false;
     }
+    to_.allowance.use();
     ++to_.statistics.records;
+  } else if (node && !mesh_.hasRecord(*node)) {
+    if (mesh_.keepRecord(*node, bytes, entry.bitOffset, entry.bitLength)) ++to_.statistics.records;
   }
-  finishFirstFlight();
+  local_.keep(entry.id, bytes, entry.bitOffset, entry.bitLength);
   return true;
 }
 
@@ -189,11 +229,9 @@ void ExactSource::finishFirstFlight() {
   malformedInRow_ = 0;
   budget_.observeAnswer(arrival.response.traffic.headerBytesDown,
                         arrival.response.traffic.bodyBytesDown, arrival.entries->size());
-  dropFirstFlight();
-  if (to_.options.freshRanking && !queueExpansion_) {
-    queue_.clear();
-    queueNext_ = 0;
-  }
+  to_.statistics.answersFromCaches += cameFromCache(arrival.response) ? 1 : 0;
+  dropFlight(flights_.begin());
+  if (to_.options.freshRanking && !queueExpansion_) forgetQueue();
 }
 
 void ExactSource::refuseFirstFlight() {
@@ -202,7 +240,7 @@ void ExactSource::refuseFirstFlight() {
   const bool expanded = !flight.request->expansion.none();
   const size_t nodes = flight.nodes.size();
   const bool tooMuch = response.status == 413 || response.status == 414;
-  dropFirstFlight();
+  dropFlight(flights_.begin());
   if (tooMuch && expanded) {
     expansionRefused_ = true;
   } else if (tooMuch && nodes > 1) {
@@ -229,14 +267,17 @@ void ExactSource::rejectFirstFlight(const std::string& problem) {
   auto request = std::make_shared<RecordRequest>();
   std::vector<NodeIndex> nodes;
   for (const NodeIndex node : flight.nodes) {
-    setBusy(node, mesh_.isActive(node));
-    if (!mesh_.isActive(node)) continue;
+    const bool wanted = mesh_.isActive(node) && !mesh_.hasRecord(node);
+    setBusy(node, wanted);
+    mesh_.setPinned(node, wanted);
+    if (!wanted) continue;
     nodes.push_back(node);
     request->nodes.push_back(mesh_.id(node));
     request->levels.push_back(static_cast<uint8_t>(mesh_.level(node)));
   }
   if (nodes.empty()) {
-    dropFirstFlight();
+    flight.nodes.clear();
+    dropFlight(flights_.begin());
     return;
   }
   request->expansion = flight.request->expansion;
@@ -248,9 +289,12 @@ void ExactSource::rejectFirstFlight(const std::string& problem) {
   send(flight, true);
 }
 
-void ExactSource::dropFirstFlight() {
-  for (const NodeIndex node : flights_.front()->nodes) setBusy(node, false);
-  flights_.pop_front();
+void ExactSource::dropFlight(std::deque<std::unique_ptr<Flight>>::iterator flight) {
+  for (const NodeIndex node : (*flight)->nodes) {
+    setBusy(node, false);
+    mesh_.setPinned(node, false);
+  }
+  flights_.erase(flight);
   to_.progress.ranked = false;
 }
 
@@ -276,12 +320,32 @@ void ExactSource::cancelAll() {
 
 void ExactSource::giveUp() {
   cancelAll();
-  flights_.clear();
+  while (!flights_.empty()) dropFlight(flights_.begin());
   std::fill(busy_.begin(), busy_.end(), uint8_t{0});
-  queue_.clear();
-  queueNext_ = 0;
-  queueExpansion_.reset();
+  forgetQueue();
+  aheadQueue_.clear();
   malformedInRow_ = 0;
+}
+
+void ExactSource::forgot(std::span<const NodeId>) {
+  plan_.clear();
+  forgetQueue();
+  aheadQueue_.clear();
+  std::fill(busy_.begin(), busy_.end(), uint8_t{0});
+  for (const auto& flight : flights_)  // pinned: these are what they were
+    for (const NodeIndex node : flight->nodes) setBusy(node, true);
+  to_.progress.ranked = false;
+}
+
+bool ExactSource::idle() const {
+  if (planWaits()) return false;
+  return std::all_of(flights_.begin(), flights_.end(),
+                     [](const auto& flight) { return flight->ahead; });
+}
+
+bool ExactSource::isFetching() const {
+  return std::any_of(flights_.begin(), flights_.end(),
+                     [](const auto& flight) { return !flight->arrival; });
 }
 
 bool ExactSource::isBusy(NodeIndex node) const {

@@ -24,6 +24,10 @@ class HeldChunks {
 
   // Was held and not forgotten, although it may have been used up since.
   [[nodiscard]] bool has(uint32_t chunk) const { return chunks_[chunk].held; }
+  // Held, and none of its records is left.
+  [[nodiscard]] bool isUsedUp(uint32_t chunk) const {
+    return chunks_[chunk].held && chunks_[chunk].records.empty();
+  }
   // `entries`: preorder, offsets into `bytes`, as decodeChunk() gives them.
   void hold(uint32_t chunk, std::vector<uint8_t> bytes, std::span<const RecordEntry> entries);
   void forget(uint32_t chunk) { chunks_[chunk] = {}; }

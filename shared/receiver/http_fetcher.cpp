@@ -38,6 +38,9 @@ struct Slot {
   curl_slist* headers = nullptr;
   std::optional<Job> job;
   FetchResponse response;
+  // By the debug stream too: curl's own times of a kept connection tell little.
+  Clock::time_point sentAt;  // the request's last octet
+  std::optional<Clock::time_point> firstByteAt;
   size_t headerBytes = 0;
   size_t maxHeaderBytes = 0;
   bool bodyTooLong = false;
@@ -57,8 +60,13 @@ std::string_view trimmed(std::string_view text) {
   return text.substr(first, text.find_last_not_of(kBlank) - first + 1);
 }
 
+void countReceived(const Slot& slot, size_t count) {
+  if (slot.job->request.received) *slot.job->request.received += count;
+}
+
 size_t onBody(char* data, size_t, size_t count, void* user) {
   auto& slot = *static_cast<Slot*>(user);
+  countReceived(slot, count);
   if (count > slot.job->request.maxBodyBytes - slot.response.body.size()) {
     slot.bodyTooLong = true;
     return 0;
@@ -69,6 +77,7 @@ size_t onBody(char* data, size_t, size_t count, void* user) {
 
 size_t onHeader(char* data, size_t, size_t count, void* user) {
   auto& slot = *static_cast<Slot*>(user);
+  countReceived(slot, count);
   slot.headerBytes += count;
   if (slot.headerBytes > slot.maxHeaderBytes) {
     slot.headersTooLong = true;
@@ -90,8 +99,15 @@ int onTraffic(CURL*, curl_infotype type, char*, size_t count, void* user) {
   auto& slot = *static_cast<Slot*>(user);
   if (!slot.job) return 0;  // a kept connection is being closed
   Traffic& traffic = slot.job->traffic;
-  if (type == CURLINFO_HEADER_OUT || type == CURLINFO_DATA_OUT) traffic.bytesUp += count;
-  if (type == CURLINFO_HEADER_IN) traffic.headerBytesDown += count;
+  if (type == CURLINFO_HEADER_OUT || type == CURLINFO_DATA_OUT) {
+    traffic.bytesUp += count;
+    slot.sentAt = Clock::now();
+    slot.firstByteAt.reset();
+  }
+  if (type == CURLINFO_HEADER_IN) {
+    traffic.headerBytesDown += count;
+    if (!slot.firstByteAt) slot.firstByteAt = Clock::now();
+  }
   if (type == CURLINFO_DATA_IN) traffic.bodyBytesDown += count;
   return 0;
 }
@@ -268,6 +284,8 @@ class HttpFetcher::Loop {
     ++slot.job->attempts;
     ++slot.job->traffic.attempts;
     slot.response = {};
+    slot.sentAt = Clock::now();
+    slot.firstByteAt.reset();
     slot.headerBytes = 0;
     slot.bodyTooLong = slot.headersTooLong = false;
 
@@ -317,6 +335,7 @@ class HttpFetcher::Loop {
     curl_easy_getinfo(easy, CURLINFO_RESPONSE_CODE, &status);
     Job job = std::move(*slot->job);
     FetchResponse response = std::move(slot->response);
+    response.timing = {slot->sentAt, slot->firstByteAt.value_or(Clock::now()), Clock::now()};
     release(*slot);
 
     response.status = static_cast<unsigned>(status);

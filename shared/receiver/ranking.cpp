@@ -8,7 +8,7 @@ namespace {
 template <typename PixelsOf>
 std::vector<Candidate> candidates(const SelectivelyRefinedMesh& mesh,
                                   std::span<const uint8_t> excluded, size_t slots, bool visibleOnly,
-                                  PixelsOf pixelsOf) {
+                                  bool withoutKept, PixelsOf pixelsOf) {
   std::vector<Candidate> found;
   for (size_t i = 0; i < slots; ++i) {
     const auto slot = static_cast<VertexSlot>(i);
@@ -16,6 +16,7 @@ std::vector<Candidate> candidates(const SelectivelyRefinedMesh& mesh,
     if (visibleOnly && pixels == 0) continue;
     const NodeIndex node = mesh.nodeAt(slot);
     if (node == kNone || mesh.isLeaf(node) || mesh.isVirtual(node)) continue;
+    if (withoutKept && mesh.hasRecord(node)) continue;
     if (node < excluded.size() && excluded[node] != 0) continue;
     found.push_back({node, slot, pixels, static_cast<uint8_t>(mesh.level(node)), mesh.id(node)});
   }
@@ -33,14 +34,24 @@ bool ranksBefore(RankOrder order, const Candidate& a, const Candidate& b) {
 
 std::vector<Candidate> visibleCandidates(const SelectivelyRefinedMesh& mesh,
                                          std::span<const uint32_t> pixels,
-                                         std::span<const uint8_t> excluded) {
-  return candidates(mesh, excluded, std::min(pixels.size(), mesh.vertexSlotCount()), true,
-                    [pixels](size_t slot) { return pixels[slot]; });
+                                         std::span<const uint8_t> excluded,
+                                         const RankingBias& bias) {
+  std::vector<Candidate> found =
+      candidates(mesh, excluded, std::min(pixels.size(), mesh.vertexSlotCount()), true,
+                 bias.withoutKept, [pixels](size_t slot) { return pixels[slot]; });
+  if (bias.lift.empty() && bias.levelsBehind == 0) return found;
+  for (Candidate& candidate : found) {
+    const unsigned lift = candidate.slot < bias.lift.size() ? bias.lift[candidate.slot] : 0;
+    const unsigned level = candidate.level + bias.levelsBehind;
+    candidate.level = static_cast<uint8_t>(std::min(level - std::min(lift, level), 255U));
+  }
+  return found;
 }
 
 std::vector<Candidate> allCandidates(const SelectivelyRefinedMesh& mesh,
                                      std::span<const uint8_t> excluded) {
-  return candidates(mesh, excluded, mesh.vertexSlotCount(), false, [](size_t) { return 0U; });
+  return candidates(mesh, excluded, mesh.vertexSlotCount(), false, false,
+                    [](size_t) { return 0U; });
 }
 
 void keepFirst(std::vector<Candidate>& candidates, size_t count, RankOrder order) {

@@ -1,7 +1,9 @@
 // What a receiver may be told, and what it tells of its work.
 #pragma once
 
+#include <chrono>
 #include <cstdint>
+#include <filesystem>
 #include <functional>
 #include <optional>
 
@@ -27,28 +29,47 @@ struct ReceiverOptions {
   FetchMode mode = FetchMode::exact;
   RankOrder order = RankOrder::significance;
   Goal goal = Goal::settled;
-  uint32_t batch = 0;   // exact: records a request; 0: adaptiveBatch()
-  uint32_t window = 0;  // requests under way; 0: 2 for exact sets, 4 for chunks
+  uint32_t batch = 0;  // exact: records a request; 0: adaptiveBatch()
+  // Requests under way; 0: 2 for exact sets, 4 for chunks, but without freshRanking as many as keep
+  // the link busy (LinkMeter), 1..16. The transport should have as many slots.
+  uint32_t window = 0;
   // After each answer advance() waits for a ranking before it applies the next one: the requests
   // then depend on the mesh and the views alone, at the price of a count for each answer. Else
-  // rankings are used up, and the caller ranks when it likes.
+  // rankings are used up, and the caller ranks when it likes: for people in front of a window. What
+  // depends on time (the window, descendants by need, dropping what a view no longer shows) is done
+  // only then.
   bool freshRanking = true;
+  // Without freshRanking: asks for descendants too where the wishes would leave the link idle.
+  bool descendants = true;
+  // Degrades when something is under way and nothing has come for so long; 0: never.
+  std::chrono::milliseconds patience{30'000};
   ReceiverLimits limits;
+  // The disk cache (disk_cache.h): what is there is not asked for, and what comes is added.
+  // Empty: none.
+  std::filesystem::path cacheFolder;
+  uint64_t cacheBytes = uint64_t{1} << 30;  // over all meshes in it
   // Called on a thread of the transport when advance() has something to do. Must only wake.
   std::function<void()> onArrival;
+  // Of the receiver's thread, for tests; null: std::chrono::steady_clock::now().
+  std::function<std::chrono::steady_clock::time_point()> clock;
 };
-[[nodiscard]] uint32_t windowOf(const ReceiverOptions& options);  // requests under way, >= 1
+// Requests under way where nothing is measured, >= 1.
+[[nodiscard]] uint32_t windowOf(const ReceiverOptions& options);
 
 struct ReceiverStatistics {
-  uint64_t requests = 0;  // for records, repeated ones too
-  uint64_t answers = 0;   // applied whole; of chunks: taken in
-  uint64_t records = 0;   // applied
+  uint64_t requests = 0;         // for records, repeated ones too
+  uint64_t answers = 0;          // applied whole; of chunks: taken in
+  uint64_t records = 0;          // applied or kept
+  uint64_t recordsFromDisk = 0;  // of these
   uint64_t malformed = 0;
-  uint64_t idsRequested = 0;                   // nodes named in requests
-  uint64_t setOctets = 0;                      // of their bitstrings, before base64url
-  uint64_t requestBytesUp = 0;                 // of record requests alone: lines, headers, content
-  uint64_t answerBytesDown = 0;                // of record answers alone, without headers
-  Traffic traffic;                             // everything
+  uint64_t cancelled = 0;          // requests that the view overtook; their octets are not counted
+  uint64_t expanded = 0;           // requests for descendants by need
+  uint64_t answersFromCaches = 0;  // of `answers`, as far as headers tell (cameFromCache())
+  uint64_t idsRequested = 0;       // nodes named in requests
+  uint64_t setOctets = 0;          // of their bitstrings, before base64url
+  uint64_t requestBytesUp = 0;     // of record requests alone: lines, headers, content
+  uint64_t answerBytesDown = 0;    // of record answers alone, without headers
+  Traffic traffic;                 // everything
   std::optional<uint64_t> recordsWhenSettled;  // the first time
 };
 

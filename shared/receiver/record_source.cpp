@@ -23,6 +23,15 @@ uint32_t windowOf(const ReceiverOptions& options) {
   return options.mode == FetchMode::chunks ? kChunkWindow : kExactWindow;
 }
 
+uint32_t windowNow(const SourceSurroundings& to) {
+  if (to.options.window > 0 || to.options.freshRanking) return windowOf(to.options);
+  const uint64_t answers = to.statistics.answers;
+  if (answers == 0) return windowOf(to.options);
+  const double mean =
+      static_cast<double>(to.statistics.answerBytesDown) / static_cast<double>(answers);
+  return to.link.window(mean).value_or(windowOf(to.options));
+}
+
 void ViewProgress::see(size_t visibleCandidates, bool idle, const ReceiverOptions& options,
                        ReceiverStatistics& statistics) {
   visible = visibleCandidates;
@@ -42,7 +51,7 @@ std::optional<SourceTrouble> RecordSource::takeTrouble() {
 void RecordSource::reportRefusal(const MeshUrl& url, const FetchResponse& response,
                                  const std::string& what) {
   if (response.status == 0) {
-    report({SourceTrouble::Kind::failed, response.error.message, false});
+    report({SourceTrouble::Kind::away, response.error.message, false});
   } else if (response.status == 404) {
     report({SourceTrouble::Kind::revisionGone, {}, false});
   } else {

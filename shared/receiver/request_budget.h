@@ -48,6 +48,11 @@ class RequestBudget {
     return !limits_.bytesDown ||
            bytesDown + (pendingAnswers + 1) * (headerBytes_ + bodyBytes) <= *limits_.bytesDown;
   }
+  // On average so far, without headers.
+  [[nodiscard]] double bytesPerRecord() const {
+    return records_ == 0 ? kFirstGuess
+                         : static_cast<double>(bodyBytes_) / static_cast<double>(records_);
+  }
   [[nodiscard]] bool limited() const { return limits_.records || limits_.bytesDown; }
 
   // `pendingRecords` in `pendingAnswers` are under way and not yet in the other two figures.
@@ -59,9 +64,7 @@ class RequestBudget {
       allowed = *limits_.records > used ? *limits_.records - used : 0;
     }
     if (limits_.bytesDown) {
-      const double perRecord =
-          records_ == 0 ? kFirstGuess
-                        : static_cast<double>(bodyBytes_) / static_cast<double>(records_);
+      const double perRecord = bytesPerRecord();
       const double used = static_cast<double>(bytesDown) +
                           static_cast<double>((pendingAnswers + 1) * headerBytes_) +
                           static_cast<double>(pendingRecords) * perRecord * kMargin;

@@ -2,9 +2,12 @@
 // one is HttpFetcher; tests script their own.
 #pragma once
 
+#include <atomic>
+#include <chrono>
 #include <cstdint>
 #include <functional>
 #include <map>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -21,6 +24,8 @@ struct FetchRequest {
   std::string contentType;        // of a QUERY
   size_t maxBodyBytes = 1 << 20;  // a longer answer is broken off
   bool bypassCaches = false;      // sends Cache-Control: no-cache
+  // Grows by the octets of the answer while they come in, if given: tells a slow answer from none.
+  std::shared_ptr<std::atomic<uint64_t>> received;
 };
 
 // Octets of HTTP/1.1 messages, over all attempts; TCP, IP and TLS are not counted.
@@ -39,12 +44,22 @@ struct Traffic {
   }
 };
 
+// Of the last attempt, as the transport saw it; all zero where it does not tell.
+struct FetchTiming {
+  using Clock = std::chrono::steady_clock;
+  Clock::time_point sent;       // with a connection open
+  Clock::time_point firstByte;  // of the answer
+  Clock::time_point done;
+  [[nodiscard]] bool known() const { return sent != Clock::time_point() && firstByte >= sent; }
+};
+
 struct FetchResponse {
   unsigned status = 0;  // 0: no answer, and `error` says why
   Error error;
   std::vector<uint8_t> body;
   std::map<std::string, std::string, std::less<>> headers;  // names in lower case
   Traffic traffic;
+  FetchTiming timing;
 };
 
 using FetchId = uint64_t;

@@ -20,8 +20,9 @@ namespace meshfront {
 // A front vertex as a drawer needs it. 48 bytes, without padding: fit for a GPU buffer as it is.
 struct DrawnVertex {
   GridPosition position{};
-  // Where its parent stands, and so where a vertex that comes of a split slides from (geomorph).
-  // A root's: its own position.
+  // Where a vertex that comes of a split slides from (geomorph): the place of its parent. A left
+  // child stands there itself, and what may slide is an ancestor of it that was split before it
+  // was drawn: the place of the last right child's parent on the path; without one its own.
   GridPosition from{};
   PackedNormal normal{};  // the mesh's own where it carries any, else vertex_normals.h's
   std::array<uint8_t, 4> colour{0, 0, 0, 255};  // sRGB and alpha; of no meaning without colours
@@ -30,6 +31,7 @@ struct DrawnVertex {
   uint8_t isLeaf = 0;                           // 1: it is final
   uint8_t depth = 0;                            // below the root
   uint8_t unused = 0;                           // 0
+  uint32_t node = 0;                            // NodeIndex in the mesh, for picking
 
   friend bool operator==(const DrawnVertex&, const DrawnVertex&) = default;
 };

@@ -88,9 +88,10 @@ std::string answerSeed(const RecordsAtHand& records, unsigned levels, size_t cou
 // Splits all, in preorder or with the last ones first, collapsing and splitting again on the way.
 std::string refineSeed(const RecordsAtHand& records, uint8_t base, bool newestFirst) {
   std::string out(1, static_cast<char>(base));
-  std::map<NodeId, size_t> numbers;  // as the mesh numbers its nodes
+  std::map<NodeId, size_t> numbers;  // as the mesh numbers its nodes: children from an even one on
   for (uint32_t tree = 0; tree < records.base().treeCount(); ++tree)
     numbers.emplace(NodeId::root(tree), numbers.size());
+  size_t next = (numbers.size() + 1) / 2 * 2;
   std::vector<NodeId> open = innerRoots(records.base());
   while (!open.empty() && out.size() < 3500) {
     const auto at = newestFirst ? open.end() - 1 : open.begin();
@@ -101,7 +102,7 @@ std::string refineSeed(const RecordsAtHand& records, uint8_t base, bool newestFi
     putWord(out, numbers.at(id));
     out += textOf(bitsOf(place));
     for (const bool right : {false, true}) {
-      numbers.emplace(id.child(right), numbers.size());
+      numbers.emplace(id.child(right), next++);
       if (!(right ? place.entry.rightIsLeaf : place.entry.leftIsLeaf))
         open.push_back(id.child(right));
     }

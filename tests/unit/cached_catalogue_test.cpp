@@ -21,7 +21,7 @@
 namespace meshfront {
 namespace {
 
-class CachedCatalogueTest : public testing::Test {
+class CachedCatalogueTest : public ::testing::Test {
  protected:
   CachedCatalogueTest() {
     EXPECT_TRUE(writePack(folder_ / "a.pack", mesh_.content));

@@ -8,7 +8,6 @@
 #include <glm/trigonometric.hpp>
 
 #include "shared/camera/camera_spec.h"
-#include "viewer/controls/view_controls.h"
 
 namespace meshfront {
 namespace {
@@ -206,71 +205,25 @@ TEST(Moves, ZoomKeepsThePointUnderTheCursor) {
   EXPECT_NEAR(glm::length(camera.eye - point), 0.25 * distance, 1e-9);
 }
 
-TEST(Controls, DragsOrbitAndPan) {
-  const PixelSize picture{800, 600};
-  const Camera start = placed("whole");
-  ViewControls controls(start, kUnitBox);
-  controls.move({100, 100}, picture);  // no button down
-  EXPECT_EQ(controls.camera(), start);
-
-  controls.press(PointerButton::left, false, {100, 100});
-  controls.move({150, 120}, picture);
-  controls.release(PointerButton::left);
-  EXPECT_EQ(controls.camera().target, start.target);
-  EXPECT_GT(controls.camera().eye.y, start.eye.y);  // dragged down: seen from higher
-  controls.move({300, 300}, picture);
-  const Camera orbited = controls.camera();
-
-  for (const auto& [button, shift] :
-       {std::pair{PointerButton::middle, false}, std::pair{PointerButton::right, false},
-        std::pair{PointerButton::left, true}}) {
-    const Camera before = controls.camera();
-    controls.press(button, shift, {10, 10});
-    controls.move({30, 5}, picture);
-    controls.release(button);
-    EXPECT_NE(controls.camera().target, before.target);
-    expectNear(controls.camera().eye - controls.camera().target, before.eye - before.target, 1e-9);
-  }
-  controls.key('R', picture);
-  EXPECT_EQ(controls.camera(), start);
-  EXPECT_NE(orbited, start);
+TEST(Moves, PanByWhatIsGrabbedFollowsThat) {
+  Camera camera = placed("whole");
+  const ViewAxes axes = viewAxes(camera);
+  const glm::dvec3 point = camera.eye + axes.forward * 0.5;
+  pan(camera, {100, -50}, 800, 0.5);
+  const glm::dvec3 seen = projected(Projection::fit(camera, kUnitBox, 1), point, point);
+  EXPECT_NEAR(seen.x * 400, 100, 1e-6);
+  EXPECT_NEAR(seen.y * 400, -50, 1e-6);
 }
 
-TEST(Controls, WheelZoomsToTheSurfaceUnderTheCursor) {
-  const PixelSize picture{800, 600};
-  ViewControls controls(placed("whole", kUnitBox, picture.aspect()), kUnitBox);
-  const glm::dvec3 surface(0.5, 0.5, 0.5);
-  auto projection = Projection::fit(controls.camera(), kUnitBox, picture.aspect());
-  const glm::dvec3 seen = projected(projection, surface, surface);
-  const glm::dvec2 cursor((seen.x + 1) / 2 * picture.width, (1 - seen.y) / 2 * picture.height);
-  const double before = glm::length(controls.camera().eye - surface);
-  controls.scroll(3, cursor, picture, static_cast<float>(seen.z));
-  projection = Projection::fit(controls.camera(), kUnitBox, picture.aspect());
-  const glm::dvec3 after = projected(projection, surface, surface);
-  EXPECT_NEAR(after.x, seen.x, 1e-5);
-  EXPECT_NEAR(after.y, seen.y, 1e-5);
-  EXPECT_LT(glm::length(controls.camera().eye - surface), 0.7 * before);
-  // No end to turning the wheel, but one to the way.
-  for (int i = 0; i < 1000; ++i) {
-    controls.scroll(-5, cursor, picture, std::nullopt);
-  }
-  EXPECT_LT(glm::length(controls.camera().eye), 1e4);
-}
-
-TEST(Controls, KeysSwitch) {
-  ViewControls controls(placed("close"), kUnitBox);
-  controls.key('S', {100, 100});
-  controls.key('W', {100, 100});
-  controls.key('H', {100, 100});
-  controls.key('X', {100, 100});
-  EXPECT_TRUE(controls.flatShading());
-  EXPECT_TRUE(controls.wireframe());
-  EXPECT_TRUE(controls.helpShown());
-  EXPECT_FALSE(controls.quitAsked());
-  controls.key('Q', {100, 100});
-  EXPECT_TRUE(controls.quitAsked());
-  controls.key('F', {100, 100});
-  EXPECT_EQ(controls.camera().target, kUnitBox.center());
+TEST(Moves, RollTurnsThePictureClockwiseAroundItsMiddle) {
+  Camera camera = placed("whole");
+  const ViewAxes before = viewAxes(camera);
+  const glm::dvec3 above = camera.target + before.upward * 0.1;
+  roll(camera, glm::radians(90.0));
+  const glm::dvec3 seen = projected(Projection::fit(camera, kUnitBox, 1), above, above);
+  EXPECT_GT(seen.x, 0.01);  // what was above is now on the right
+  EXPECT_NEAR(seen.y, 0, 1e-9);
+  expectNear(viewAxes(camera).forward, before.forward, 1e-12);
 }
 
 }  // namespace

@@ -112,7 +112,7 @@ TEST(CutFrame, TellsSidesAndWhichTriangleIsBetter) {
   const auto at = [&](int x, int y) { return frame.place(GridPosition{100 + x, 100 + y, 50}); };
   EXPECT_EQ(frame.pairPlaces(at(20, 5), at(-3, -8)), 0b1010U);
   EXPECT_EQ(frame.pairPlaces(at(8, 0), at(9, 1)), 0b0101U);  // not beyond the middle; beyond
-  EXPECT_FALSE(frame.place(std::nullopt).known);
+  EXPECT_FALSE(frame.place(std::optional<GridPosition>()).known);
   EXPECT_EQ(frame.stepPlaces({}, at(1, 1), false), 258U);
   EXPECT_EQ(frame.stepPlaces(at(1, 1), {}, true), 257U);
   EXPECT_EQ(frame.stepPlaces({}, {}, true), 256U);

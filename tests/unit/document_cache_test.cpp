@@ -49,7 +49,7 @@ class PlainUpstream final : public Upstream {
   bool open_ = true;
 };
 
-class DocumentCacheTest : public testing::Test {
+class DocumentCacheTest : public ::testing::Test {
  protected:
   ~DocumentCacheTest() override { upstream_.setOpen(true); }
   DocumentCache& make(std::chrono::milliseconds refreshWait, size_t budget = size_t{1} << 20) {

@@ -14,7 +14,7 @@ namespace {
 
 const std::filesystem::path kCorpus = MESHFRONT_FUZZ_CORPUS;
 
-class FuzzCorpus : public testing::TestWithParam<Target> {};
+class FuzzCorpus : public ::testing::TestWithParam<Target> {};
 
 TEST_P(FuzzCorpus, IsReplayed) {
   size_t valid = 0;
@@ -38,11 +38,12 @@ TEST_P(FuzzCorpus, IsReplayed) {
   EXPECT_GT(others, 0U);
 }
 
-INSTANTIATE_TEST_SUITE_P(AllTargets, FuzzCorpus, testing::ValuesIn(kTargets), [](const auto& info) {
-  std::string name(info.param.name);
-  std::erase(name, '-');
-  return name;
-});
+INSTANTIATE_TEST_SUITE_P(AllTargets, FuzzCorpus, ::testing::ValuesIn(kTargets),
+                         [](const auto& info) {
+                           std::string name(info.param.name);
+                           std::erase(name, '-');
+                           return name;
+                         });
 
 TEST(FuzzCorpusFolder, HasNoSeedsWithoutATarget) {
   std::set<std::string> folders;

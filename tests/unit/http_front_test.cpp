@@ -49,7 +49,7 @@ class EchoHandler final : public HttpHandler {
   std::promise<void> gate_;
 };
 
-class HttpFrontTest : public testing::Test {
+class HttpFrontTest : public ::testing::Test {
  protected:
   void start(HttpFront::Options options = {.waitingThreads = 1}) {
     options.address = *resolveListenAddress("127.0.0.1:0");

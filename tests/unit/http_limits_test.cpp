@@ -30,7 +30,7 @@ class SizedHandler final : public HttpHandler {
   HttpResponse overloaded(const HttpRequest&) override { return {}; }
 };
 
-class HttpLimitsTest : public testing::Test {
+class HttpLimitsTest : public ::testing::Test {
  protected:
   void start(const ServerLimits& limits, unsigned waitingThreads = 0) {
     log_ = *AccessLog::open(folder_ / "log", AccessLog::Format::text);
@@ -208,8 +208,8 @@ TEST_F(HttpLimitsTest, RefusesLongFields) {
   expectProblem(client.receive(), 431);
 }
 
-class HttpMemoryTest : public HttpLimitsTest, public testing::WithParamInterface<unsigned> {};
-INSTANTIATE_TEST_SUITE_P(WaitingThreads, HttpMemoryTest, testing::Values(0U, 1U));
+class HttpMemoryTest : public HttpLimitsTest, public ::testing::WithParamInterface<unsigned> {};
+INSTANTIATE_TEST_SUITE_P(WaitingThreads, HttpMemoryTest, ::testing::Values(0U, 1U));
 
 TEST_P(HttpMemoryTest, IsBoundedForAllRequestsTogether) {
   start({.memoryInFlight = 100'000}, GetParam());

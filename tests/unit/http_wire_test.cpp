@@ -33,7 +33,7 @@ class WireHandler final : public HttpHandler {
   HttpResponse overloaded(const HttpRequest&) override { return {}; }
 };
 
-class HttpWireTest : public testing::Test {
+class HttpWireTest : public ::testing::Test {
  protected:
   void SetUp() override {
     log_ = *AccessLog::open(folder_ / "log", AccessLog::Format::text);

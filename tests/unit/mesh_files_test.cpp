@@ -388,7 +388,7 @@ TEST(Off, NamesTheLineOfWhatIsWrong) {
   countErrorsOfPrefixes("COFF\n3 1 0\n0 0 0 1\n1 0 0 1\n0 1 0 1\n3 0 1 2\n", off);
 }
 
-class MeshFilesOnDisk : public testing::Test {
+class MeshFilesOnDisk : public ::testing::Test {
  protected:
   void SetUp() override {
     folder_ =

@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::chrono::hours kLongGrace(1);
 
-class PackCatalogueTest : public testing::Test {
+class PackCatalogueTest : public ::testing::Test {
  protected:
   // The revision that was written.
   std::string write(const std::string& file, const std::string& name, uint32_t seed) {

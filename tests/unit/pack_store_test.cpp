@@ -12,7 +12,7 @@ namespace {
 
 constexpr size_t kPlenty = size_t{64} << 20;
 
-class PackStoreTest : public testing::Test {
+class PackStoreTest : public ::testing::Test {
  protected:
   void open(const PackContent& content, size_t indexBytes = kPlenty) {
     ASSERT_TRUE(writePack(folder_ / "a.pack", content));

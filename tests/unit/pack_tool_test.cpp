@@ -58,7 +58,7 @@ IndexedMesh colouredSheet() {
   return mesh;
 }
 
-class NodeRecordTest : public testing::Test {
+class NodeRecordTest : public ::testing::Test {
  protected:
   NodeRecordTest() : records_(encodedContent(colouredSheet())) {
     EXPECT_TRUE(writePack(folder_ / "a.pack", records_.content()));
@@ -100,7 +100,7 @@ TEST_F(NodeRecordTest, IsWhatASplitDoes) {
     // The new faces are (u, t, l) and (u, r, t).
     ASSERT_EQ(mesh.edges().faceSlots(), faces + 2);
     const auto corner = [&](uint32_t face, uint32_t i) {
-      return mesh.id(mesh.nodeAt(mesh.edges().origin(3 * face + i)));
+      return mesh.id(mesh.nodeAt(mesh.edges().origin(HalfEdgeMesh::halfEdge(face, i))));
     };
     EXPECT_EQ(corner(faces, 2), record->ring[record->leftEntry].node);
     EXPECT_EQ(corner(faces + 1, 1), record->ring[record->rightEntry].node);

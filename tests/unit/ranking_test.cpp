@@ -4,6 +4,9 @@
 
 #include <random>
 
+#include "tests/data/mesh_shapes.h"
+#include "tests/unit/encoded_mesh.h"
+
 namespace meshfront {
 namespace {
 
@@ -59,6 +62,28 @@ TEST(Ranking, KeepsTheFirstOnesWhateverTheInputsOrder) {
       EXPECT_EQ(slotsOf(shuffled), expected) << count;
     }
   }
+}
+
+TEST(Ranking, LeavesOutWhatIsKeptIfToldTo) {
+  const RecordsAtHand records(encodedContent(torus(30, 20)));
+  auto mesh = SelectivelyRefinedMesh::fromBase(records.base()).value();
+  const std::vector<uint32_t> pixels(mesh.vertexSlotCount(), 9);
+  const size_t all = allCandidates(mesh, {}).size();
+  ASSERT_EQ(visibleCandidates(mesh, pixels, {}).size(), all);
+  NodeIndex root = 0;
+  while (mesh.isLeaf(root)) ++root;
+  ASSERT_TRUE(records.split(mesh, root));
+  mesh.collapse(root);
+  const auto asksFor = [root](const std::vector<Candidate>& candidates) {
+    return std::any_of(candidates.begin(), candidates.end(),
+                       [root](const Candidate& c) { return c.node == root; });
+  };
+  EXPECT_TRUE(asksFor(visibleCandidates(mesh, pixels, {})));
+  const RankingBias withoutKept{.withoutKept = true};
+  EXPECT_EQ(visibleCandidates(mesh, pixels, {}, withoutKept).size(), all - 1);
+  EXPECT_FALSE(asksFor(visibleCandidates(mesh, pixels, {}, withoutKept)));
+  ASSERT_TRUE(mesh.dropRecord(root));
+  EXPECT_TRUE(asksFor(visibleCandidates(mesh, pixels, {}, withoutKept)));
 }
 
 }  // namespace

@@ -13,7 +13,7 @@
 namespace meshfront {
 namespace {
 
-class RecordServiceTest : public testing::Test {
+class RecordServiceTest : public ::testing::Test {
  protected:
   RecordServiceTest() {
     EXPECT_TRUE(writePack(folder_ / "a.pack", mesh_.content));

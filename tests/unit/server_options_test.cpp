@@ -110,17 +110,17 @@ TEST(ServerOptions, RefuseWrongUsage) {
            {"--threads", "0"},
            {"--listen", "nowhere"},
            {"--unknown"}}) {
-    testing::internal::CaptureStderr();
+    ::testing::internal::CaptureStderr();
     const ParsedOptions parsed = parseArguments(wrong);
-    EXPECT_NE(testing::internal::GetCapturedStderr(), "") << wrong[0];
+    EXPECT_NE(::testing::internal::GetCapturedStderr(), "") << wrong[0];
     EXPECT_EQ(parsed.status, kUsageStatus) << wrong[0];
   }
 }
 
 TEST(ServerOptions, HelpShowsTheTableWithUnitsAndDefaults) {
-  testing::internal::CaptureStdout();
+  ::testing::internal::CaptureStdout();
   EXPECT_EQ(parseArguments({"--help"}).status, 0);
-  const std::string help = testing::internal::GetCapturedStdout();
+  const std::string help = ::testing::internal::GetCapturedStdout();
   for (const char* part : {"Limits", "--max-content SIZE=1MiB", "--header-timeout SECONDS=10",
                            "--max-connections COUNT=16384", "--max-target OCTETS=8000"})
     EXPECT_NE(help.find(part), std::string::npos) << part << " in\n" << help;

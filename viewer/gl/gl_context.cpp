@@ -23,11 +23,8 @@ GlContext::GlContext(std::unique_ptr<EglContext> egl, std::string source)
     : egl_(std::move(egl)),
       source_(std::move(source)),
       renderer_(glText(GL_RENDERER)),
-      version_(glText(GL_VERSION)) {
-  for (const char* name : {"llvmpipe", "softpipe", "swrast", "SwiftShader", "Software"}) {
-    software_ |= renderer_.find(name) != std::string::npos;
-  }
-}
+      version_(glText(GL_VERSION)),
+      software_(currentContextIsSoftware()) {}
 GlContext::GlContext(GlContext&&) noexcept = default;
 GlContext& GlContext::operator=(GlContext&&) noexcept = default;
 GlContext::~GlContext() = default;
@@ -71,6 +68,15 @@ Result<GlContext> GlContext::adoptCurrent() {
 
 std::string GlContext::description() const {
   return "OpenGL " + version_ + " on " + renderer_ + " (through " + source_ + ")";
+}
+
+bool currentContextIsSoftware() {
+  const std::string renderer = glText(GL_RENDERER);
+  bool software = false;
+  for (const char* name : {"llvmpipe", "softpipe", "swrast", "SwiftShader", "Software"}) {
+    software |= renderer.find(name) != std::string::npos;
+  }
+  return software;
 }
 
 std::string takeGlErrors() {

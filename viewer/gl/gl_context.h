@@ -48,6 +48,9 @@ class GlContext {
   bool software_ = false;
 };
 
+// Whether the current context draws with the CPU.
+[[nodiscard]] bool currentContextIsSoftware();
+
 // The errors pending in the current context ("GL_INVALID_OPERATION, ..."); empty when there is
 // none. Clears them. For tests and for the end of large steps.
 [[nodiscard]] std::string takeGlErrors();

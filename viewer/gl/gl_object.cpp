@@ -24,6 +24,15 @@ void deleteGlName(GlKind kind, GlName name) {
     case GlKind::shader:
       glDeleteShader(name);
       break;
+    case GlKind::query:
+      glDeleteQueries(1, &name);
+      break;
+  }
+}
+
+GlSync::~GlSync() {
+  if (sync_ != nullptr) {
+    glDeleteSync(sync_);
   }
 }
 

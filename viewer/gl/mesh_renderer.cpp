@@ -2,21 +2,25 @@
 
 #include <epoxy/gl.h>
 
-#include <cmath>
 #include <glm/gtc/type_ptr.hpp>
 #include <string>
 #include <utility>
 
-#include "viewer/gl/mesh_shaders.h"
-#include "viewer/gl/shader_program.h"
+#include "viewer/gl/mesh_attributes.h"
 
 namespace meshfront {
+
+struct MeshRenderer::Pass {
+  const DrawStyle& style;
+  const FrameState& frame;
+  Projection projection;
+  PixelSize size{};
+  bool items = false;
+};
+
 namespace {
 
-// The grid point nearest to the eye.
-GridPosition anchorFor(const Quantization& quantization, const glm::dvec3& eye) {
-  return quantization.toGrid({eye.x, eye.y, eye.z});
-}
+static_assert(kRestBytes == 36, "the wireframe's shader counts on it");
 
 void prepare(const RenderTarget& target, bool withColour) {
   const std::array<GLenum, 2> attachments = {
@@ -41,64 +45,82 @@ void prepare(const RenderTarget& target, bool withColour) {
   glClearNamedFramebufferuiv(target.framebuffer(), GL_COLOR, 1, noItem.data());
 }
 
+Projection projectionFor(const RenderTarget& target, const Camera& camera, const Bounds& bounds,
+                         const FrameState& frame) {
+  return Projection::fit(camera, bounds, frame.aspect > 0 ? frame.aspect : target.size().aspect());
+}
+
+// Features that this mesh needs in this pass.
+unsigned featuresFor(const GpuMesh& mesh, const DrawStyle& style, const FrameState& frame,
+                     bool items) {
+  unsigned features = items ? MeshPrograms::kItems : 0;
+  if (style.slideSeconds > 0 && frame.now < mesh.lastBirth() + double{style.slideSeconds})
+    features |= MeshPrograms::kSlides;
+  if (style.colours && mesh.isTranslucent()) features |= MeshPrograms::kScreenDoor;
+  if (items) return features;
+  if (style.colouring != Colouring::surface) features |= MeshPrograms::kScale;
+  if (style.wireframe && mesh.fitsShaderStorage()) features |= MeshPrograms::kWireframe;
+  return features;
+}
+
+// The counts as a vertex attribute; 0 for all without any.
+void attachPixels(const GpuMesh& mesh, GlName buffer) {
+  const GLuint vao = mesh.vertexArray();
+  if (buffer != 0) {
+    glVertexArrayVertexBuffer(vao, kPixelBinding, buffer, 0, sizeof(uint32_t));
+    glEnableVertexArrayAttrib(vao, kPixelAttribute);
+  } else {
+    glDisableVertexArrayAttrib(vao, kPixelAttribute);
+    glVertexAttribI4ui(kPixelAttribute, 0, 0, 0, 0);
+  }
+}
+
 }  // namespace
 
-MeshRenderer::Program::Program(GlProgram linked) : program(std::move(linked)) {
-  anchor = glGetUniformLocation(program.name(), "anchor");
-  clipFromGrid = glGetUniformLocation(program.name(), "clipFromGrid");
-  viewFromGrid = glGetUniformLocation(program.name(), "viewFromGrid");
-  flatShading = glGetUniformLocation(program.name(), "flatShading");
-  colours = glGetUniformLocation(program.name(), "colours");
-  halfPicture = glGetUniformLocation(program.name(), "halfPicture");
-}
-
-MeshRenderer::MeshRenderer(Program shaded, Program wireframe, Program items)
-    : shaded_(std::move(shaded)), wireframe_(std::move(wireframe)), items_(std::move(items)) {}
-
 Result<MeshRenderer> MeshRenderer::create() {
-  const std::string version = "#version 450 core\n";
-  auto shaded = drawProgram("mesh", kMeshVertexShader, version + kMeshFragmentShader);
-  if (!shaded) {
-    return tl::unexpected(shaded.error());
-  }
-  auto wireframe = drawProgram("mesh with edges", kMeshVertexShader,
-                               version + "#define WIREFRAME\n" + kMeshFragmentShader);
-  if (!wireframe) {
-    return tl::unexpected(wireframe.error());
-  }
-  auto items = drawProgram("items", kItemVertexShader, kItemFragmentShader);
-  if (!items) {
-    return tl::unexpected(items.error());
-  }
-  return MeshRenderer(Program(std::move(*shaded)), Program(std::move(*wireframe)),
-                      Program(std::move(*items)));
+  auto programs = MeshPrograms::create();
+  if (!programs) return tl::unexpected(programs.error());
+  return MeshRenderer(std::move(*programs));
 }
 
-void MeshRenderer::drawWith(const Program& program, const RenderTarget& target, const GpuMesh& mesh,
-                            const Projection& projection) {
-  if (mesh.triangleCount() == 0 || mesh.vertexCount() == 0) {
-    return;
-  }
-  const Quantization& quantization = mesh.quantization();
-  const GridPosition anchor = anchorFor(quantization, projection.camera.eye);
-  const std::array<double, 3> world = quantization.toWorld(anchor);
-  const glm::dvec3 origin(world[0], world[1], world[2]);
-  glm::dmat4 scale(quantization.step);
-  scale[3][3] = 1;
-  const glm::mat4 clip(projection.clipFrom(origin) * scale);
-  const glm::mat4 view(projection.viewFrom(origin) * scale);
+void MeshRenderer::drawOne(const MeshInstance& instance, size_t number, uint32_t firstItem,
+                           const Pass& pass) const {
+  const GpuMesh& mesh = *instance.mesh;
+  const InstanceView place = InstanceView::of(instance, pass.projection);
+  if (!place.mayBeSeen(mesh.quantization())) return;
+  const DrawStyle& style = pass.style;
+  const unsigned features = featuresFor(mesh, style, pass.frame, pass.items);
+  const MeshProgram& program = programs_->with(features);
   const GLuint name = program.program.name();
+  const auto setMatrix = [name](GLint location, const glm::dmat4& matrix) {
+    const glm::mat4 rounded(matrix);
+    glProgramUniformMatrix4fv(name, location, 1, GL_FALSE, glm::value_ptr(rounded));
+  };
   glUseProgram(name);
-  glProgramUniform3i(name, program.anchor, anchor[0], anchor[1], anchor[2]);
-  glProgramUniformMatrix4fv(name, program.clipFromGrid, 1, GL_FALSE, glm::value_ptr(clip));
-  if (program.viewFromGrid >= 0) {
-    glProgramUniformMatrix4fv(name, program.viewFromGrid, 1, GL_FALSE, glm::value_ptr(view));
-  }
-  if (program.halfPicture >= 0) {
-    glProgramUniform2f(name, program.halfPicture, 0.5F * static_cast<float>(target.size().width),
-                       0.5F * static_cast<float>(target.size().height));
+  glProgramUniform3i(name, program.anchor, place.anchor[0], place.anchor[1], place.anchor[2]);
+  setMatrix(program.clipFromGrid, place.clipFromGrid);
+  setMatrix(program.viewFromGrid, place.viewFromGrid);
+  const glm::mat3 normals(place.viewFromNormal);
+  glProgramUniformMatrix3fv(name, program.viewFromNormal, 1, GL_FALSE, glm::value_ptr(normals));
+  glProgramUniform1f(name, program.slideNow, static_cast<float>(pass.frame.now - mesh.epoch()));
+  glProgramUniform1f(name, program.slideSeconds, style.slideSeconds);
+  glProgramUniform1i(name, program.scale, static_cast<GLint>(style.colouring));
+  glProgramUniform1ui(name, program.finestLevel, style.finestLevel);
+  glProgramUniform1ui(name, program.instance, static_cast<GLuint>(number));
+  glProgramUniform1i(name, program.flatShading, style.flatShading ? 1 : 0);
+  glProgramUniform1i(name, program.colours, style.colours && mesh.hasColours() ? 1 : 0);
+  glProgramUniform1ui(name, program.firstItem, firstItem);
+  glProgramUniform2f(name, program.halfPicture, 0.5F * static_cast<float>(pass.size.width),
+                     0.5F * static_cast<float>(pass.size.height));
+  if ((features & MeshPrograms::kWireframe) != 0) {
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, mesh.cornerBuffer());
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 1, mesh.positionBuffer());
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 2, mesh.restBuffer());
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 3, mesh.birthBuffer());
+  }
+  if ((features & MeshPrograms::kScale) != 0) {
+    const bool shown = style.colouring == Colouring::pixels && pass.frame.pixels != nullptr;
+    attachPixels(mesh, shown ? pass.frame.pixels->buffer(number, mesh.vertexCount()) : 0);
   }
   glBindVertexArray(mesh.vertexArray());
   glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(3 * mesh.triangleCount()), GL_UNSIGNED_INT,
@@ -106,23 +128,38 @@ void MeshRenderer::drawWith(const Program& program, const RenderTarget& target, 
   glBindVertexArray(0);
 }
 
-void MeshRenderer::draw(RenderTarget& target, const GpuMesh& mesh, const Camera& camera,
-                        const Bounds& bounds, const DrawStyle& style) const {
-  prepare(target, true);
-  const std::array<GLfloat, 4> background = {style.background[0], style.background[1],
-                                             style.background[2], 1};
-  glClearNamedFramebufferfv(target.framebuffer(), GL_COLOR, 0, background.data());
-  const Program& program = style.wireframe && mesh.fitsShaderStorage() ? wireframe_ : shaded_;
-  glProgramUniform1i(program.program.name(), program.flatShading, style.flatShading ? 1 : 0);
-  glProgramUniform1i(program.program.name(), program.colours,
-                     style.colours && mesh.hasColours() ? 1 : 0);
-  drawWith(program, target, mesh, Projection::fit(camera, bounds, target.size().aspect()));
+void MeshRenderer::drawAll(const RenderTarget& target, std::span<const MeshInstance> instances,
+                           const Pass& pass) const {
+  prepare(target, !pass.items);
+  uint64_t firstItem = 1;
+  for (size_t i = 0; i < instances.size(); ++i) {
+    const GpuMesh& mesh = *instances[i].mesh;
+    if (firstItem + mesh.triangleCount() > UINT32_MAX) return;
+    if (mesh.triangleCount() > 0 && mesh.vertexCount() > 0)
+      drawOne(instances[i], i, static_cast<uint32_t>(firstItem), pass);
+    firstItem += mesh.triangleCount();
+  }
 }
 
-void MeshRenderer::drawItems(RenderTarget& target, const GpuMesh& mesh, const Camera& camera,
-                             const Bounds& bounds) const {
-  prepare(target, false);
-  drawWith(items_, target, mesh, Projection::fit(camera, bounds, target.size().aspect()));
+void MeshRenderer::draw(RenderTarget& target, std::span<const MeshInstance> instances,
+                        const Camera& camera, const Bounds& bounds, const DrawStyle& style,
+                        const FrameState& frame) const {
+  const std::array<GLfloat, 4> background = {style.background[0], style.background[1],
+                                             style.background[2], 1};
+  const GLenum colours = GL_COLOR_ATTACHMENT0;
+  glNamedFramebufferDrawBuffers(target.framebuffer(), 1, &colours);
+  glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+  glDisable(GL_SCISSOR_TEST);
+  glClearNamedFramebufferfv(target.framebuffer(), GL_COLOR, 0, background.data());
+  drawAll(target, instances,
+          {style, frame, projectionFor(target, camera, bounds, frame), target.size(), false});
+}
+
+void MeshRenderer::drawItems(RenderTarget& target, std::span<const MeshInstance> instances,
+                             const Camera& camera, const Bounds& bounds, const DrawStyle& style,
+                             const FrameState& frame) const {
+  drawAll(target, instances,
+          {style, frame, projectionFor(target, camera, bounds, frame), target.size(), true});
 }
 
 }  // namespace meshfront

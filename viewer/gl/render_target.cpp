@@ -98,6 +98,17 @@ float RenderTarget::depthAt(int x, int y) const {
   return depth;
 }
 
+uint32_t RenderTarget::itemAt(int x, int y) const {
+  if (x < 0 || y < 0 || x >= size_.width || y >= size_.height) {
+    return 0;
+  }
+  GLuint item = 0;
+  glBindFramebuffer(GL_READ_FRAMEBUFFER, framebuffer_.name());
+  glReadBuffer(GL_COLOR_ATTACHMENT1);
+  glReadPixels(x, size_.height - 1 - y, 1, 1, GL_RED_INTEGER, GL_UNSIGNED_INT, &item);
+  return item;
+}
+
 void RenderTarget::blitToWindow(PixelSize window) const {
   glNamedFramebufferReadBuffer(framebuffer_.name(), GL_COLOR_ATTACHMENT0);
   glBlitNamedFramebuffer(framebuffer_.name(), 0, 0, 0, size_.width, size_.height, 0, 0,

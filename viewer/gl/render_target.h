@@ -1,6 +1,6 @@
 // Where everything is drawn, in a window and without one: colour RGBA8, depth (32-bit float,
 // reversed: 0 is background) and the item buffer R32UI, which holds for each pixel the visible
-// triangle's face slot + 1, or 0.
+// triangle's item (mesh_instance.h), or 0. Of a mesh alone that is its face slot + 1.
 #pragma once
 
 #include <cstdint>
@@ -27,6 +27,8 @@ class RenderTarget {
   void readItems(std::vector<uint32_t>& items) const;
   // At a pixel counted from the upper left; 0 = background or outside.
   [[nodiscard]] float depthAt(int x, int y) const;
+  // Likewise.
+  [[nodiscard]] uint32_t itemAt(int x, int y) const;
   // Copies the colours to the window whose context is current.
   void blitToWindow(PixelSize window) const;
 
