@@ -42,7 +42,7 @@ Result<bool> SceneDrawing::take(std::vector<MeshNews> news, double seconds, size
       changed = true;
     }
     if (drawn.mesh == nullptr) continue;
-    const Result<bool> applied = drawn.mesh->apply(std::move(one.update), seconds, byteLimit);
+    Result<bool> applied = drawn.mesh->apply(std::move(one.update), seconds, byteLimit);
     if (!applied) return applied;
     changed = changed || *applied;
     drawn.taken = true;
@@ -50,7 +50,7 @@ Result<bool> SceneDrawing::take(std::vector<MeshNews> news, double seconds, size
   for (Drawn& drawn : meshes_) {
     if (std::exchange(drawn.taken, false) || drawn.mesh == nullptr || !drawn.mesh->isPending())
       continue;
-    const Result<bool> advanced = drawn.mesh->advance(seconds, byteLimit);
+    Result<bool> advanced = drawn.mesh->advance(seconds, byteLimit);
     if (!advanced) return advanced;
     changed = changed || *advanced;
   }
@@ -184,7 +184,7 @@ Result<bool> SceneDrawing::startPass(const Camera& camera, const Bounds& bounds,
   view.style = style;
   view.frame.now = seconds;
   const uint64_t tag = passViews_.add(camera, picture, instances_.size(), ahead);
-  const Result<bool> started = pass_.start(renderer_, instances_, view, tag);
+  Result<bool> started = pass_.start(renderer_, instances_, view, tag);
   if (!started || !*started) passViews_.dropLast();
   return started;
 }

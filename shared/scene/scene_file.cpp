@@ -90,7 +90,7 @@ Result<glm::dmat4> readPlace(const json& mesh, const std::string& where) {
     place = glm::translate(place, {by[0], by[1], by[2]});
   }
   if (mesh.contains("rotate")) {
-    const auto rotation = readRotation(mesh["rotate"], where + ".rotate");
+    auto rotation = readRotation(mesh["rotate"], where + ".rotate");
     if (!rotation) return rotation;
     place = place * *rotation;
   }

@@ -69,7 +69,7 @@ class Flight {
 
   Result<Outlook> settle(const Camera& camera) {
     while (true) {
-      const Result<Outlook> outlook = scene_.look(camera);
+      Result<Outlook> outlook = scene_.look(camera);
       if (!outlook || *outlook != Outlook::more || ended()) return outlook;
       scene_.wait(kLongestNap);
     }
@@ -80,7 +80,7 @@ class Flight {
     const auto share = std::chrono::duration<double>(1 / path_.framesPerSecond());
     const auto due = FlightClock::now() + std::chrono::duration_cast<FlightClock::duration>(share);
     while (true) {
-      const Result<Outlook> outlook = scene_.look(camera);
+      Result<Outlook> outlook = scene_.look(camera);
       const auto now = FlightClock::now();
       if (!outlook || now >= due || ended()) return outlook;
       const auto left = std::chrono::duration_cast<milliseconds>(due - now);

@@ -184,7 +184,7 @@ Result<CameraPathSpec> parseCameraPath(std::string_view text, const std::string&
     if (path->keyFrames.empty() ? read->time != 0 : read->time <= path->keyFrames.back().time)
       return wrong(place + "times begin with 0 and ascend, this one is " +
                    shortened(frame["time"]));
-    path->keyFrames.push_back(std::move(*read));
+    path->keyFrames.push_back(*read);
   }
   if (path->loop && path->keyFrames.size() < 2) return wrong("a loop needs two key frames or more");
   const double frames = path->keyFrames.back().time * path->rounds * path->framesPerSecond;
