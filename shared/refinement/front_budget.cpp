@@ -240,11 +240,9 @@ bool FrontBudget::makeRoom(const Ranked& candidate, size_t& operations, FrontOut
       if (room == Room::needsTriangles) nextEntering_ = entering_.size() - 1;
       return false;
     }
-    // Not its own place to stand on.
-    if (meshes_[leaving->nodes[leaving->next].mesh]->parent(candidate.node) ==
-            leaving->nodes[leaving->next].node &&
-        leaving->nodes[leaving->next].mesh == candidate.mesh) {
-      ++leaving->next;
+    const Ranked& last = leaving->nodes[leaving->next];
+    if (last.mesh == candidate.mesh && meshes_[last.mesh]->parent(candidate.node) == last.node) {
+      ++leaving->next;  // it would go with it
       continue;
     }
     collapseNext(*leaving, outcome);
