@@ -47,7 +47,7 @@ void ChunkSource::planView(std::span<const Candidate> visible, size_t atMost) {
   plansInRow_ = anyAtHand ? plansInRow_ + 1 : 0;
   if (wanted.size() > atMost) keepFirst(wanted, atMost, to_.options.order);
   if (!index_ || !rankChunks(wanted, queue_, &waiting_)) return;
-  // Without fresh rankings: what there is room for now, and as much again until the next one.
+  // Without fresh rankings the queue fills the window twice: at once, and until the next ranking.
   const size_t ahead = 2 * size_t{windowNow(to_)};
   if (!to_.options.freshRanking && queue_.size() > ahead) queue_.resize(ahead);
 }

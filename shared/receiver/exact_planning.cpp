@@ -77,7 +77,7 @@ void ExactSource::rank(std::span<const uint32_t> pixels, const RankingBias& bias
   to_.progress.see(visible.size(), idle(), to_.options, to_.statistics);
   if (to_.progress.completing) return;
   forgetQueue();
-  // Without fresh rankings: what there is room for now, and as much again until the next one.
+  // Without fresh rankings the queue fills the window twice: at once, and until the next ranking.
   const size_t ahead = to_.options.freshRanking ? windowNow(to_) : 2 * size_t{windowNow(to_)};
   planOrQueue(visible, std::min(ahead * std::max<size_t>(batchSize(), 1), bias.atMost));
   plansInRow_ = plan_.empty() ? 0 : plansInRow_ + 1;

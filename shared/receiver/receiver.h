@@ -102,8 +102,7 @@ class Receiver {
   bool waitForArrival(std::chrono::milliseconds timeout) const;
 
   // The mesh changed since the last ranking, and a request could be sent if there were a new one.
-  // False while what no view shows is fetched;
-  // rank() puts what a new view shows in front of that.
+  // False while what no view shows is fetched; rank() puts what a new view shows in front of that.
   [[nodiscard]] bool wantsRanking() const;
   // `pixels`: counts by vertex slot of mesh() as it is now. Sends what there is room for.
   void rank(std::span<const uint32_t> pixels, const RankingBias& bias = {});

@@ -26,7 +26,7 @@ inline constexpr std::array<ControlLine, 28> kControlLines = {{
     {"S", "smooth or flat shading"},
     {"W", "wireframe"},
     {"C, Shift + C", "next, previous colouring"},
-    {"B", "boxes around what is missing"},
+    {"B", "circles around what is missing"},
     {"G", "splits slide or pop"},
     {"", "Measure"},
     {"click", "pick a point; the distance from the last one"},

@@ -38,7 +38,7 @@ struct ViewSwitches {
   bool flatShading = false;
   bool wireframe = false;
   ColouringMode colouring = ColouringMode::own;
-  bool missingBounds = false;  // boxes around what is still missing
+  bool missingBounds = false;  // circles around what is still missing
   bool geomorph = true;        // splits slide instead of popping
   bool panel = true;
   bool help = false;
