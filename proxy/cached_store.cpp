@@ -93,7 +93,7 @@ Result<std::optional<Answer>> CachedStore::collectCached(std::span<const NodeId>
     return fail(ErrorCode::tooLarge, "the answer would be too large; ask for fewer nodes");
   if (lacking) return std::optional<Answer>();
   parts_.counters.recordHits.add(records);
-  Answer answer{out.take(), records};
+  Answer answer{out.take(), records, 0};
   appendChecksum(answer.bytes);
   return std::optional<Answer>(std::move(answer));
 }

@@ -36,7 +36,7 @@ Result<Answer> RecordGathering::collect(std::span<const NodeId> wanted,
     if (needs.empty()) {
       context_.counters.recordHits.add(records_ - missed_);
       context_.counters.recordMisses.add(missed_);
-      Answer answer{out_.take(), records_};
+      Answer answer{out_.take(), records_, missed_};
       appendChecksum(answer.bytes);
       return answer;
     }

@@ -53,6 +53,9 @@ PanelStatus PanelNumbers::status(double seconds, double ranking) const {
         8 * static_cast<double>(is.answerBytesDown) / static_cast<double>(fetched);
   if (options_.cacheDir && is.records > 0)
     status.cacheShare = static_cast<double>(is.recordsFromDisk) / static_cast<double>(is.records);
+  if (is.answers > 0)
+    status.networkCacheShare =
+        static_cast<double>(is.answersFromCaches) / static_cast<double>(is.answers);
   status.roundTrip = scene_.roundTripSeconds;
   if (ranking > 0) status.rankingTime = ranking;
   status.quality = quality_.samples();

@@ -53,7 +53,8 @@ FaceOrigins faceOrigins(std::span<const Triangle> triangles, const VertexForest&
     int deepest = -1;
     size_t side = 0;  // the pair (side, side + 1) of corners has that ancestor
     for (size_t i = 0; i < 3; ++i) {
-      const int depth = partingDepth(forest.id(t[i]), forest.id(t[(i + 1) % 3]));
+      const int depth =
+          static_cast<int>(partingDepth(forest.id(t[i]), forest.id(t[(i + 1) % 3]))) - 1;
       if (depth > deepest) {
         deepest = depth;
         side = i;

@@ -45,7 +45,6 @@ void CutRegions::collect(const CodingInput& input, const VertexForest& forest,
   std::mutex adding;
   const auto work = [&](uint32_t block, uint32_t begin, uint32_t end) {
     StaticRing ring;
-    RingWalkSpace space;
     std::vector<CutDecision> cut;
     std::vector<NodeId> entries;
     CutStatistics counts;
@@ -65,7 +64,7 @@ void CutRegions::collect(const CodingInput& input, const VertexForest& forest,
       walkRing(
           std::span<const NodeId>(entries), [&](uint32_t gap) { return keyOf(ring.gaps[gap]); },
           positionOf, CutFrame(fields.position(node), fields.delta(node), fields.normal(node)),
-          recorder, RingCut{0, ring.right, true}, space);
+          recorder, RingCut{0, ring.right, true});
       counts.add(cut);
       blocks_[block].append(cut);
     }

@@ -135,11 +135,10 @@ void traceCut(NodeRecord& out, const SelectivelyRefinedMesh& mesh, NodeIndex nod
                        CutDecoder(tables, place.bytes, place.entry.bitOffset + out.record.cutBegin,
                                   place.entry.bitOffset + out.record.cutEnd),
                        out.decisions);
-  RingWalkSpace space;
   const RingCut cut = walkRing(
       std::span<const NodeId>(entries),
       [&](uint32_t gap) { return mesh.keyOf(HalfEdgeMesh::faceOf(ring[gap])); }, positionOf,
-      CutFrame(out.position, out.delta, out.normal), coder, RingCut{}, space);
+      CutFrame(out.position, out.delta, out.normal), coder, RingCut{});
   out.leftEntry = cut.left;
   out.rightEntry = cut.right;
   out.leftFirst = cut.leftFirst;

@@ -23,7 +23,7 @@ class BitReader {
   // The next `count` bits (0..57) without consuming them; zeros beyond the end.
   [[nodiscard]] uint64_t peek(unsigned count) {
     if (count > ready_) refill();
-    return count == 0 ? 0 : window_ >> (64 - count);
+    return window_ >> 1 >> (63 - count);
   }
   uint64_t read(unsigned count) {
     const uint64_t value = peek(count);
@@ -102,7 +102,7 @@ class BitWindow {
  public:
   explicit BitWindow(BitReader& in) : bits_(in.window()), valid_(in.windowBits()) {}
   [[nodiscard]] uint64_t peek(unsigned count) const {  // 0..63
-    return count == 0 ? 0 : bits_ >> (64 - count);
+    return bits_ >> 1 >> (63 - count);
   }
   uint64_t read(unsigned count) {
     const uint64_t value = peek(count);

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "shared/bits/bit_reader.h"
-
 namespace meshfront {
 namespace {
 
@@ -14,14 +12,6 @@ uint64_t reversed(uint64_t value, unsigned length) {
   uint64_t out = 0;
   for (unsigned i = 0; i < length; ++i) out |= (value >> i & 1) << (length - 1 - i);
   return out;
-}
-
-// The bits of a word in the other order.
-uint64_t reversed64(uint64_t v) {
-  v = (v >> 1 & 0x5555555555555555ULL) | (v & 0x5555555555555555ULL) << 1;
-  v = (v >> 2 & 0x3333333333333333ULL) | (v & 0x3333333333333333ULL) << 2;
-  v = (v >> 4 & 0x0F0F0F0F0F0F0F0FULL) | (v & 0x0F0F0F0F0F0F0F0FULL) << 4;
-  return __builtin_bswap64(v);
 }
 
 void carry(std::vector<uint8_t>& digits) {
@@ -38,7 +28,7 @@ void DecisionReader::refill() {
     const uint64_t from = backward_ ? end_ - count : begin_;
     uint64_t bits = BitReader(bytes_, from, from + count).peek(count);
     if (backward_) {
-      bits = reversed64(bits) >> (64 - count);
+      bits = reversedWord(bits) >> (64 - count);
       end_ -= count;
     } else {
       begin_ += count;

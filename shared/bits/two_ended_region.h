@@ -17,6 +17,7 @@
 #include <span>
 #include <vector>
 
+#include "shared/bits/bit_reader.h"
 #include "shared/bits/bit_writer.h"
 
 namespace meshfront {
@@ -25,10 +26,21 @@ namespace meshfront {
 inline constexpr unsigned kChanceBits = 6;
 inline constexpr unsigned kEvenChance = 1U << (kChanceBits - 1);
 
+// The bits of a word in the other order.
+[[nodiscard]] inline uint64_t reversedWord(uint64_t v) {
+  v = (v >> 1 & 0x5555555555555555ULL) | (v & 0x5555555555555555ULL) << 1;
+  v = (v >> 2 & 0x3333333333333333ULL) | (v & 0x3333333333333333ULL) << 2;
+  v = (v >> 4 & 0x0F0F0F0F0F0F0F0FULL) | (v & 0x0F0F0F0F0F0F0F0FULL) << 4;
+  return __builtin_bswap64(v);
+}
+
 // The decisions of one direction. Any bits decode to something: there is no damage to notice here.
 class DecisionReader {
  public:
   DecisionReader() = default;
+  // Of a word, from the highest bit on, with zeros behind it.
+  explicit DecisionReader(uint64_t bits)
+      : next_(bits << 32), value_(bits >> 32), ready_(kEndless) {}
   // Reads bits [begin, end) of `bytes`, from `end` down if backward. begin <= end <= all bits.
   DecisionReader(std::span<const uint8_t> bytes, uint64_t begin, uint64_t end, bool backward)
       : bytes_(bytes), begin_(begin), end_(end), backward_(backward) {
@@ -57,6 +69,7 @@ class DecisionReader {
   friend class DecisionWriter;
   static constexpr uint64_t kWholeRange = uint64_t{1} << 32;
   static constexpr uint64_t kLeastRange = uint64_t{1} << 24;
+  static constexpr unsigned kEndless = 1U << 30;  // more bits than anybody asks for
 
   void advance(unsigned count) {
     next_ <<= count;
@@ -77,20 +90,34 @@ class DecisionReader {
 class TwoEndedReader {
  public:
   TwoEndedReader(std::span<const uint8_t> bytes, uint64_t begin, uint64_t end)
-      : forward_(bytes, begin, end, false), bytes_(bytes), begin_(begin), end_(end) {}
+      : bytes_(bytes), begin_(begin), end_(end) {
+    if (isShort()) {
+      word_ = BitReader(bytes, begin, end).window();
+      forward_ = DecisionReader(word_);
+    } else {
+      forward_ = DecisionReader(bytes, begin, end, false);
+    }
+  }
   bool forward(unsigned chanceOfZero) { return forward_.decide(chanceOfZero); }
   bool backward(unsigned chanceOfZero) {
-    if (!started_) backward_ = DecisionReader(bytes_, begin_, end_, true);
-    started_ = true;
+    if (!started_) {
+      started_ = true;
+      backward_ = isShort() ? DecisionReader(reversedWord(word_ >> 1) << (63 - (end_ - begin_)))
+                            : DecisionReader(bytes_, begin_, end_, true);
+    }
     return backward_.decide(chanceOfZero);
   }
 
  private:
+  // Nearly all are; a word holds them.
+  [[nodiscard]] bool isShort() const { return end_ - begin_ <= 56; }
+
   DecisionReader forward_;
   DecisionReader backward_;
   std::span<const uint8_t> bytes_;
   uint64_t begin_;
   uint64_t end_;
+  uint64_t word_ = 0;  // of a short one, from the highest bit on
   bool started_ = false;
 };
 

@@ -3,6 +3,7 @@
 // 4 for 4 and 5, 5 for 6 and 7, 6 for 8 to 11, ... (of magnitudes).
 #pragma once
 
+#include <algorithm>
 #include <bit>
 #include <cstdint>
 #include <cstdlib>
@@ -20,7 +21,7 @@ namespace meshfront {
 
 // Bits behind the sign that a class leaves open.
 [[nodiscard]] inline unsigned openBits(unsigned valueClass) {
-  return valueClass < 4 ? 0 : valueClass / 2 - 1;
+  return std::max(valueClass / 2, 1U) - 1;
 }
 
 // The bits that code a value besides its class: sign and open low bits.
@@ -28,15 +29,16 @@ namespace meshfront {
   return value == 0 ? 0 : 1 + openBits(valueClassOf(value));
 }
 
-// Untrusted; valueClass < 2 * 25.
+// Untrusted; valueClass < 2 * 25. Without branches, since nobody can guess values.
 template <typename Reader>
 int32_t readValue(Reader& in, unsigned valueClass) {
-  if (valueClass == 0) return 0;
   const unsigned open = openBits(valueClass);
   const uint32_t lead = valueClass < 2 ? valueClass : 2U | (valueClass & 1U);
-  const bool negative = in.readBit();
-  const auto magnitude = static_cast<int32_t>(lead << open | static_cast<uint32_t>(in.read(open)));
-  return negative ? -magnitude : magnitude;
+  const unsigned sign = valueClass == 0 ? 0 : 1;
+  const auto bits = static_cast<uint32_t>(in.read(sign + open));
+  const uint32_t magnitude = lead << open | (bits & ((1U << open) - 1));
+  const uint32_t whenNegative = 0U - (bits >> open & sign);
+  return static_cast<int32_t>((magnitude ^ whenNegative) - whenNegative);
 }
 
 inline void writeValue(BitWriter& out, int32_t value) {

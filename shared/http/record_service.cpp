@@ -87,6 +87,12 @@ const std::string* find(const HttpResponse& response, std::string_view name) {
   return nullptr;
 }
 
+// RFC 9211. A set of records can be in the cache in part.
+const char* cacheStatus(uint64_t records, uint64_t fetched) {
+  if (fetched == 0) return "meshfront; hit";
+  return fetched < records ? "meshfront; fwd=partial" : "meshfront; fwd=miss";
+}
+
 }  // namespace
 
 RecordService::RecordService(Catalogue& catalogue, Metrics& metrics, Options options)
@@ -213,11 +219,14 @@ Result<HttpResponse> RecordService::splits(const HttpRequest& request, const Rou
   ids_.add(set->wanted.size());
   records_.add(answer->records);
   recordBytes_.add(answer->bytes.size());
+  const std::optional<uint64_t> fetched = answer->fetched;
+  const uint64_t records = answer->records;
   const std::span<const uint8_t> bitstring = byQuery ? request.content : set->fromUrl;
   std::string etag =
       recordsTag(answer->bytes, recordsKey(route.revision, bitstring, set->expansion));
   HttpResponse response =
       immutableResponse(HeldBytes::of(std::move(answer->bytes)), std::move(etag), store.age());
+  if (fetched) response.set("Cache-Status", cacheStatus(records, *fetched));
   if (byQuery) {
     std::string target = splitTarget(route.mesh, route.revision, request.content, set->expansion);
     if (target.size() <= options_.maxTarget) response.set("Content-Location", std::move(target));

@@ -282,7 +282,6 @@ class SelectivelyRefinedMesh {
   std::vector<HalfEdge> ring_;
   std::vector<VertexSlot> ends_;  // of ring_
   std::vector<NodeId> entries_;   // their nodes
-  RingWalkSpace space_;
   // Where find() ended: the way from the root.
   struct FoundPath {
     NodeId id;

@@ -90,18 +90,22 @@ Result<void> SelectivelyRefinedMesh::apply(NodeIndex index, const Bits& bits) {
     if (isVirtualSlot(at)) return nullptr;
     // Left children stand where their parents stand, so only the right turns below `depth` count:
     // each leads to the slot that its parent's vertex still has.
-    // Three steps at a time, whether needed or not: how many there are cannot be guessed.
-    for (uint64_t turns = depth < 64 ? entries_[entry].path << depth : 0; turns != 0;)
-      for (unsigned step = 0; step < 3; ++step) {
-        at = turns != 0 ? slots_[at].from : at;
-        turns &= turns - (turns != 0 ? 1 : 0);
+    // How many there are, mostly none to three, cannot be guessed: so four are taken without
+    // asking.
+    uint64_t turns = depth < 64 ? entries_[entry].path << depth : 0;
+    do {
+      for (unsigned step = 0; step < 4; ++step) {
+        const uint32_t whenLeft = turns != 0 ? UINT32_MAX : 0;
+        at ^= (at ^ slots_[at].from) & whenLeft;
+        turns &= turns - 1;
       }
+    } while (turns != 0);
     return &slots_[at].position;
   };
   const RingCut cut = walkRing(
       std::span<const NodeId>(entries_.data(), size),
       [&](uint32_t gap) { return keyOf(HalfEdgeMesh::faceOf(ring_[gap])); }, positionOf,
-      CutFrame(from, delta, node.normal), coder, RingCut{}, space_);
+      CutFrame(from, delta, node.normal), coder, RingCut{});
 
   // From here on nothing fails.
   NodeId id = slots_[slot].id;

@@ -28,6 +28,8 @@ struct CollectLimits {
 struct Answer {
   std::vector<uint8_t> bytes;  // as parseAnswer() reads it
   uint64_t records = 0;
+  // Of a cache: how many of them it did not hold; nothing at the origin.
+  std::optional<uint64_t> fetched{};
 };
 
 // Thread-safe. Errors: notFound (no such node, a leaf, no such chunk), tooLarge (beyond the

@@ -86,6 +86,10 @@ class Interface(unittest.TestCase):
         self.assertEqual(service.status, proxy.status, target[:200])
         self.assertEqual("1.1 meshfront", proxy.headers.pop("via", None))
         self.assertNotIn("via", service.headers)
+        self.assertNotIn("cache-status", service.headers)
+        if "/splits" in target and service.status in (200, 304):
+            self.assertRegex(proxy.headers.pop("cache-status", ""),
+                             r"^meshfront; (hit|fwd=miss|fwd=partial)$")
         age = proxy.headers.pop("age", None)
         if service.status in (200, 304) and "no-store" != service.headers["cache-control"]:
             self.assertRegex(age or "", r"^\d+$")

@@ -80,6 +80,16 @@ class ProxyChain(unittest.TestCase):
         shutil.rmtree(cls.folder)
         assert statuses == [0, 0, 0], statuses
 
+    def test_0_tells_what_it_held(self):
+        def status(roots):
+            return ask(self.inner.port, f"{self.fixed}/splits/{ids(roots)}").headers["cache-status"]
+
+        self.assertEqual("meshfront; fwd=miss", status(self.roots[:2]))
+        self.assertEqual("meshfront; hit", status(self.roots[:2]))
+        self.assertEqual("meshfront; fwd=partial", status(self.roots[:3]))
+        answer = ask(self.service.port, f"{self.fixed}/splits/{ids(self.roots[:2])}")
+        self.assertNotIn("cache-status", answer.headers)
+
     def test_1_both_answer_as_the_service_does(self):
         for target in self.targets:
             right = ask(self.service.port, target)

@@ -25,7 +25,6 @@ std::vector<NodeId> rootEntries(size_t count) {
 template <typename Coder>
 RingCut walkRoots(Coder& coder, RingCut target) {
   const auto entries = rootEntries(kAround.size());
-  RingWalkSpace space;
   // Gap 3 is the smallest: run 0 begins at entry 4.
   return walkRing(
       std::span<const NodeId>(entries),
@@ -34,7 +33,7 @@ RingCut walkRoots(Coder& coder, RingCut target) {
         EXPECT_EQ(depth, 0U);
         return kAround[entry];
       },
-      CutFrame(kCentre, kDelta, kUp), coder, target, space);
+      CutFrame(kCentre, kDelta, kUp), coder, target);
 }
 
 TEST(CutCoding, HasLiteralDecisionsForFiveRuns) {

@@ -85,6 +85,7 @@ std::string toJson(const PanelStatus& status) {
       {"splits_per_second", orNull(status.splitsPerSecond)},
       {"bits_per_split", orNull(status.bitsPerSplit)},
       {"cache_share", orNull(status.cacheShare)},
+      {"network_cache_share", orNull(status.networkCacheShare)},
       {"round_trip", orNull(status.roundTrip)},
       {"ranking_time", orNull(status.rankingTime)},
       {"quality", known ? Json(status.quality.back().share) : Json(nullptr)},

@@ -98,7 +98,8 @@ void drawTraffic(const PanelStatus& status) {
                       " a second");
   }
   if (status.bitsPerSplit) row("a split", fixedText(*status.bitsPerSplit, 1) + " bits");
-  if (status.cacheShare) row("from cache", shareText(*status.cacheShare));
+  if (status.cacheShare) row("from disk", shareText(*status.cacheShare));
+  if (status.networkCacheShare) row("from caches", shareText(*status.networkCacheShare));
   if (status.roundTrip) row("round trip", durationText(*status.roundTrip));
 }
 
