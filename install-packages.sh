@@ -36,6 +36,7 @@ test=(
   openssl                              # certificates for their tests
   systemd                              # systemd-analyze: the units of deploy/
   python3-yaml python3-jsonschema      # the description of the interface
+  python3-matplotlib                   # plots of tests/evaluation
 )
 # What tests/bench compares with; whatever of these is missing is left out there.
 bench=(

@@ -42,6 +42,7 @@ SceneOptions windowSceneOptions(const ViewOptions& options) {
 
 SceneOptions pictureSceneOptions(const ViewOptions& options) {
   SceneOptions result = commonOptions(options);
+  result.receiver.freshRanking = !options.live;
   // A target in dB may need what a settled view does not show: hidden corners of visible triangles.
   if (!options.path && options.until.kind != Kind::settled)
     result.receiver.goal = ReceiverOptions::Goal::complete;

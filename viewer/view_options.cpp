@@ -176,8 +176,9 @@ std::string contradiction(const ViewOptions& options) {
     return "--path says where the camera is: leave out --camera";
   if (options.headless && (!options.scriptFile.empty() || options.interfaceScale > 0))
     return "--script and --interface-scale are for the window: leave out --headless";
-  if (!options.headless && (options.untilGiven || options.reference || options.timeout > 0))
-    return "--until, --reference, --psnr-target and --timeout need --headless";
+  if (!options.headless &&
+      (options.untilGiven || options.reference || options.timeout > 0 || options.live))
+    return "--until, --reference, --psnr-target, --timeout and --live need --headless";
   return {};
 }
 
@@ -251,6 +252,9 @@ ParsedOptions parseViewOptions(int argc, char** argv) {
   app.add_flag("!--no-colours", options.colours, "draw clay even where the mesh has colours");
   app.add_flag("--count-on-cpu", options.countOnCpu,
                "count pixels on the CPU: the reference way, with equal results");
+  app.add_flag("--live", options.live,
+               "headless: ask as a window does, for as much as the link holds and for descendants "
+               "by need; what is asked for then depends on time");
   app.add_option("--timeout", options.timeout, "headless: seconds until giving up; 0: never")
       ->check(CLI::NonNegativeNumber.description(""))
       ->capture_default_str();

@@ -39,6 +39,7 @@ struct ViewOptions {
   bool colours = true;  // show the mesh's own, if it has any
   bool countOnCpu = false;
   double timeout = 0;           // seconds; 0 = none
+  bool live = false;            // headless: ask as a window does
   uint64_t triangleBudget = 0;  // drawn at a time; 0: none
   uint64_t memoryBudget = 0;    // bytes, of meshes and of what a GPU holds for them; 0: none
   std::optional<std::filesystem::path> cacheDir;

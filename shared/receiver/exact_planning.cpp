@@ -1,6 +1,7 @@
 // Which nodes a view, one that may come, or the rest needs, in which order, and with how many of
 // their descendants.
 #include <algorithm>
+#include <chrono>
 
 #include "shared/receiver/exact_source.h"
 #include "shared/receiver/ranking.h"
@@ -13,7 +14,55 @@ constexpr size_t kCompletingBatches = 8;  // queued at a time
 constexpr uint32_t kMostLevelsByNeed = 2;  // generations
 constexpr double kProbingProducts = 4;     // what the link may hold beyond what it was seen to
 
+// Of the first requests, before answers have told what the link carries: what most links do, and
+// what TCP sends before it waits for acknowledgements (RFC 6928).
+constexpr double kLikelyBytesPerSecond = 250'000;
+constexpr double kFirstFlightBytes = 10 * 1'448;
+constexpr double kLikelyRecordBytes = 4;  // no answer has told yet
+constexpr std::chrono::milliseconds kTripWorthGuessing{10};
+
+// Records up to significance level `most` below a node of `level`, the node's own included: from
+// one octave to the next a mesh has twice the vertices.
+double recordsUpTo(unsigned most, unsigned level) {
+  return most < level ? 1 : static_cast<double>((uint64_t{2} << (most - level)) - 1);
+}
+
 }  // namespace
+
+// Up to which significance level descendants come along with the first wishes of all. On a long
+// link they cost no time, and spare a round trip for each generation of what comes first in the
+// ranking; what of it turns out not to be seen is some of kFirstFlightBytes. No more than the
+// pixels tell: a node that shows eight cannot need more than eight leaves.
+std::optional<uint8_t> ExactSource::firstSignificance(const std::vector<Wish>& chosen) const {
+  const auto trip = to_.link.roundTrip();
+  if (to_.options.freshRanking || !to_.options.descendants || !trip || mesh_.splitsApplied() > 0 ||
+      to_.allowance.limited() || *trip < kTripWorthGuessing)
+    return std::nullopt;
+  const double bytes = std::min(
+      kLikelyBytesPerSecond * std::chrono::duration<double>(*trip).count(), kFirstFlightBytes);
+  const double room = bytes / kLikelyRecordBytes - static_cast<double>(pendingRecords());
+  const auto count = static_cast<double>(chosen.size());
+  const double share = count / std::max(count, static_cast<double>(wished_));
+  double pixels = 0;
+  for (const Wish& wish : chosen) pixels += wish.pixels;
+  std::optional<uint8_t> best;
+  for (unsigned most = 0; most <= tables_->maxLevel; ++most) {
+    double records = 0;
+    for (const Wish& wish : chosen) records += recordsUpTo(most, mesh_.level(wish.node));
+    if (records > room * share || records + count > pixels) break;
+    if (records > count) best = static_cast<uint8_t>(most);
+  }
+  return best;
+}
+
+uint64_t ExactSource::likelyRecords(const RecordRequest& request) const {
+  const Expansion& expansion = request.expansion;
+  if (!expansion.significance)
+    return request.nodes.size() * ((uint64_t{2} << expansion.levels) - 1);
+  double records = 0;
+  for (const uint8_t level : request.levels) records += recordsUpTo(*expansion.significance, level);
+  return static_cast<uint64_t>(std::min(records, static_cast<double>(mesh_.splitCount())));
+}
 
 // Generations to ask for in one go. Where all that is wished for does not fill the link for a round
 // trip, the next generation costs no time, and some octets for what turns out not to be seen. No

@@ -123,9 +123,8 @@ void ExactSource::sendBatch(std::vector<Wish> chosen, bool ahead) {
     setBusy(wish.node, true);
     mesh_.setPinned(wish.node, true);
   }
-  const uint32_t levels = request->expansion.levels;
-  to_.statistics.expanded += levels > 0 ? 1 : 0;
-  flight.mostRecords = chosen.size() * ((uint64_t{2} << levels) - 1);
+  to_.statistics.expanded += request->expansion.none() || queueExpansion_ ? 0 : 1;
+  flight.mostRecords = queueExpansion_ ? chosen.size() : likelyRecords(*request);
   flight.sequence = ++lastSequence_;
   flight.request = std::move(request);
   flight.ahead = ahead;
@@ -137,7 +136,8 @@ Expansion ExactSource::expansionFor(const std::vector<Wish>& chosen) const {
   if (expansionRefused_ || budget_.limited()) return expansion;
   // An answer of unknown length must not run into the allowance.
   if (queueExpansion_ && !to_.allowance.limited()) expansion.significance = queueExpansion_;
-  if (!queueExpansion_) expansion.levels = levelsByNeed(chosen);
+  if (!queueExpansion_) expansion.significance = firstSignificance(chosen);
+  if (!expansion.significance && !queueExpansion_) expansion.levels = levelsByNeed(chosen);
   return expansion;
 }
 

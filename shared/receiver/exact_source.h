@@ -49,7 +49,7 @@ class ExactSource final : public RecordSource {
     FetchId id = 0;
     std::shared_ptr<const RecordRequest> request;
     std::vector<NodeIndex> nodes;           // of the request, in its order
-    uint64_t mostRecords = 0;               // that the answer may hold
+    uint64_t mostRecords = 0;               // that the answer is taken to hold
     bool ahead = false;                     // for a view that may come
     std::optional<RecordsArrival> arrival;  // else under way
     size_t applied = 0;                     // entries of the arrival
@@ -65,6 +65,8 @@ class ExactSource final : public RecordSource {
   void requestAhead();
   [[nodiscard]] std::vector<Wish> takeBatch(std::vector<Wish>& from, size_t& next) const;
   [[nodiscard]] Expansion expansionFor(const std::vector<Wish>& chosen) const;
+  [[nodiscard]] std::optional<uint8_t> firstSignificance(const std::vector<Wish>& chosen) const;
+  [[nodiscard]] uint64_t likelyRecords(const RecordRequest& request) const;
   [[nodiscard]] uint32_t levelsByNeed(const std::vector<Wish>& chosen) const;
   void refillFromRest();
   [[nodiscard]] uint64_t pendingRecords() const;

@@ -1,9 +1,12 @@
 #include "shared/scene/scene_receiver.h"
 
 #include <algorithm>
+#include <cmath>
+#include <glm/matrix.hpp>
 #include <utility>
 
 #include "shared/receiver/ranking.h"
+#include "shared/scene/likely_error.h"
 #include "shared/scene/mesh_placement.h"
 
 namespace meshfront {
@@ -44,6 +47,12 @@ void add(ReceiverStatistics& sum, const ReceiverStatistics& one) {
   sum.requestBytesUp += one.requestBytesUp;
   sum.answerBytesDown += one.answerBytesDown;
   sum.traffic += one.traffic;
+}
+
+// A point of the world in a mesh's grid steps.
+glm::dvec3 onGrid(const glm::dvec3& world, const SceneMesh& mesh, const Quantization& grid) {
+  const glm::dvec3 point(glm::inverse(mesh.worldFromMesh) * glm::dvec4(world, 1));
+  return (point - glm::dvec3(grid.origin[0], grid.origin[1], grid.origin[2])) / grid.step;
 }
 
 }  // namespace
@@ -159,6 +168,12 @@ void SceneReceiver::rank(const SceneCounts& counts) {
     bringUpToDate(mesh, counts.meshes[i]);
     liftOf(front->positions(), mesh.pixels, mesh.receiver->metadata()->quantization,
            mesh.placed.worldFromMesh, counts.camera, options_.foveation, spot_, mesh.lift);
+    if (ranksByLikelyError()) {
+      const Quantization& grid = mesh.receiver->metadata()->quantization;
+      const double halfHeight = std::tan(counts.camera.verticalFov / 2);
+      liftByLikelyError(*front, mesh.pixels, onGrid(counts.camera.eye, mesh.placed, grid),
+                        counts.picture.height / (2 * halfHeight), mesh.lift);
+    }
     for (VertexSlot slot = 0; slot < mesh.pixels.size(); ++slot) {
       all += mesh.pixels[slot];
       const NodeIndex node = front->nodeAt(slot);
@@ -256,7 +271,10 @@ void SceneReceiver::compareSizes(const Camera& camera) {
         camera.eye);
     largest = std::max(largest, mesh.apparentSize);
   }
-  for (MeshOfScene& mesh : meshes_) mesh.levelsBehind = levelsBehind(mesh.apparentSize, largest);
+  // Room in front of the levels for what is lifted.
+  const unsigned room = ranksByLikelyError() ? kMostErrorLift : 0;
+  for (MeshOfScene& mesh : meshes_)
+    mesh.levelsBehind = levelsBehind(mesh.apparentSize, largest) + room;
 }
 
 // How many of the records that the next requests ask for are each mesh's: those of its vertices

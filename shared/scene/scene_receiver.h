@@ -9,7 +9,8 @@
 //   }
 //
 // A ranking compares the front vertices of all meshes: by significance level, corrected for how
-// large each mesh looks (mesh_placement.h) and for what is looked at (view_lift.h), then by pixels.
+// large each mesh looks (mesh_placement.h), for what is likely to be wrong in the picture
+// (likely_error.h) and for what is looked at (view_lift.h), then by pixels.
 // The first ones are asked for, each of its own service. Budgets are of all meshes together.
 // Belongs to one thread; RefinementThread gives it one. The transport must outlive it.
 #pragma once
@@ -98,6 +99,9 @@ class SceneReceiver {
   void bringUpToDate(MeshOfScene& mesh, const MeshCounts& counts);
   void rankAhead(const SceneCounts& counts);
   void compareSizes(const Camera& camera);
+  [[nodiscard]] bool ranksByLikelyError() const {
+    return options_.receiver.order == RankOrder::significance;
+  }
   void shareOut();
   void planBudgets(const SceneCounts& counts);
   void workBudgets();

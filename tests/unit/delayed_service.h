@@ -23,6 +23,7 @@ class DelayedService final : public Transport {
     Held held{++last_, {}, std::move(completion), {}};
     const Clock::time_point there = now_ + ticks(roundTrip_ / 2);
     held.response = service_.answer(request);
+    urls.push_back(request.url);
     const Clock::time_point begin = std::max(there, linkFree_);
     const double bytes = static_cast<double>(held.response.traffic.bytesDown());
     linkFree_ = begin + ticks(Seconds(bytes / bytesPerSecond_));
@@ -50,6 +51,7 @@ class DelayedService final : public Transport {
   [[nodiscard]] Clock::time_point now() const { return now_; }
   [[nodiscard]] size_t underWay() const { return held_.size(); }
   size_t most = 0;         // under way at a time
+  std::vector<std::string> urls;
   uint64_t bytesSent = 0;  // of all answers, given up ones too
 
  private:

@@ -83,6 +83,7 @@ class LinkTest : public ReceiverTest {
     double seconds = 0;
     size_t most = 0;
     ReceiverStatistics statistics;
+    std::vector<std::string> urls;
   };
   // Everything is visible, and the nearer the coarser, as in a view.
   Ride ride(ReceiverOptions options, double roundTrip, double bytesPerSecond) {
@@ -100,7 +101,8 @@ class LinkTest : public ReceiverTest {
       receiver.rank(everywhere(receiver, std::max(1U, 200'000 / vertices)));
     }
     EXPECT_EQ(receiver.state(), ReceiverState::complete) << receiver.reason();
-    return {DelayedService::Seconds(link.now() - begin).count(), link.most, receiver.statistics()};
+    return {DelayedService::Seconds(link.now() - begin).count(), link.most, receiver.statistics(),
+            link.urls};
   }
 };
 
@@ -126,6 +128,19 @@ TEST_F(LinkTest, AsksForDescendantsWhereRoundTripsAreLong) {
   EXPECT_LT(fast.seconds, 0.8 * slow.seconds);
   // Within a round trip of a millisecond there is nothing to gain.
   EXPECT_LE(ride(with, 0.0005, 1e5).statistics.expanded, 1U);
+}
+
+TEST_F(LinkTest, FirstAsksForAllUpToALevelWhereRoundTripsAreLong) {
+  const auto firstRecords = [](const Ride& ride) -> std::string {
+    for (const std::string& url : ride.urls)
+      if (url.find("/splits") != std::string::npos) return url;
+    return {};
+  };
+  EXPECT_NE(firstRecords(ride({}, 0.2, 1e6)).find("?significance="), std::string::npos);
+  EXPECT_EQ(firstRecords(ride({}, 0.005, 1e6)).find("significance"), std::string::npos);
+  ReceiverOptions without;
+  without.descendants = false;
+  EXPECT_EQ(firstRecords(ride(without, 0.2, 1e6)).find('?'), std::string::npos);
 }
 
 TEST_F(LinkTest, AsksForNoDescendantsBeyondWhatIsAllowedOrWhereRunsMustRepeat) {

@@ -1,0 +1,76 @@
+#include "tests/evaluation/sender_driven/full_decoding.h"
+
+#include <algorithm>
+#include <glm/geometric.hpp>
+
+namespace meshfront::evaluation {
+
+Result<FullDecoding> FullDecoding::of(const BaseMesh& base,
+                                      std::span<const std::span<const uint8_t>> chunks) {
+  auto mesh = SelectivelyRefinedMesh::fromBase(base);
+  if (!mesh) return tl::unexpected(mesh.error());
+  FullDecoding decoding(std::move(*mesh));
+  for (uint32_t i = 0; i < chunks.size(); ++i)
+    if (auto split = decoding.splitChunk(i, chunks[i]); !split)
+      return tl::unexpected(split.error());
+  if (!decoding.mesh_.complete()) return fail("the chunks do not make up the whole mesh");
+  decoding.measureLeaves();
+  return decoding;
+}
+
+Result<void> FullDecoding::splitChunk(uint32_t number, std::span<const uint8_t> bytes) {
+  const auto chunk = decodeChunk(bytes, mesh_.base().tables);
+  if (!chunk) return tl::unexpected(chunk.error());
+  for (const RecordEntry& entry : chunk->entries) {
+    const auto node = mesh_.find(entry.id);
+    if (!node || !mesh_.isActive(*node)) return fail("a record's parent is missing");
+    const VertexSlot slot = mesh_.slot(*node);
+    // The ring as it is before the split; where the new vertex stands is known after it.
+    ring_.clear();
+    mesh_.edges().forEachOutgoing(slot, [&](HalfEdge h) {
+      const FaceSlot face = HalfEdgeMesh::faceOf(h);
+      const Triangle& corners = mesh_.drawnCorners()[face];
+      if (corners[0] == corners[1]) return;
+      std::array<glm::dvec3, 3> triangle;
+      for (size_t i = 0; i < 3; ++i) triangle[i] = gridPoint(mesh_.positions()[corners[i]]);
+      ring_.push_back(triangle);
+    });
+    if (auto split = mesh_.split(*node, bytes, entry.bitOffset, entry.bitLength); !split)
+      return tl::unexpected(split.error());
+    const glm::dvec3 point = gridPoint(mesh_.position(mesh_.leftChild(*node) + 1));
+    const double error = distanceFromRing(slot, point);
+    records_.push_back({entry, number, static_cast<float>(error), *node});
+  }
+  return {};
+}
+
+double FullDecoding::distanceFromRing(VertexSlot slot, const glm::dvec3& point) const {
+  // A vertex without a drawn face: its own place is all there was.
+  double nearest = glm::length(point - gridPoint(mesh_.positions()[slot]));
+  for (const auto& triangle : ring_)
+    nearest = std::min(nearest, distanceToTriangle(point, triangle));
+  return nearest;
+}
+
+void FullDecoding::measureLeaves() {
+  extents_.resize(mesh_.vertexSlotCount());
+  const auto positions = mesh_.positions();
+  for (uint32_t slot = 0; slot < extents_.size(); ++slot)
+    extents_[slot].includePoint(gridPoint(positions[slot]));
+  for (const Triangle& corners : mesh_.drawnCorners()) {
+    if (corners[0] == corners[1]) continue;
+    const std::array<glm::dvec3, 3> at{gridPoint(positions[corners[0]]),
+                                       gridPoint(positions[corners[1]]),
+                                       gridPoint(positions[corners[2]])};
+    const glm::dvec3 normal = glm::cross(at[1] - at[0], at[2] - at[0]);
+    const double area = glm::length(normal);
+    for (size_t i = 0; i < 3; ++i) {
+      NodeExtent& extent = extents_[corners[i]];
+      extent.includePoint(at[(i + 1) % 3]);
+      extent.includePoint(at[(i + 2) % 3]);
+      if (area > 0) extent.includeNormal(normal / area);
+    }
+  }
+}
+
+}  // namespace meshfront::evaluation
