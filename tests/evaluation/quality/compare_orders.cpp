@@ -13,7 +13,7 @@
 namespace meshfront::evaluation {
 namespace {
 
-constexpr std::array<double, 3> kTargets = {30, 35, 40};
+constexpr std::array<double, 3> kOrderTargets = {30, 35, 40};
 constexpr double kStopAt = 40.5;  // dB
 constexpr double kFactor = 1.1;   // of the records between two pictures
 // The small mesh for the exact order: so many records of the view-independent order are all there
@@ -24,15 +24,15 @@ constexpr PixelSize kSmallPicture{250, 250};
 constexpr uint32_t kSmallBatch = 10;
 constexpr uint32_t kSeed = 1;
 
-constexpr const char* kCurves = "order_curves.csv";
-constexpr const char* kTargetsCsv = "records_to_psnr.csv";
+constexpr const char* kOrderCurves = "order_curves.csv";
+constexpr const char* kOrderTargetsCsv = "records_to_psnr.csv";
 
 class OrdersComparison {
  public:
   OrdersComparison(Easel& easel, const QualityOptions& options, ExperimentFolder folder)
       : easel_(easel), options_(options), folder_(std::move(folder)) {
-    folder_.startCsv(kCurves, {"mesh", "view", "order", "records", "psnr"});
-    folder_.startCsv(kTargetsCsv, {"mesh", "view", "order", "psnr", "records"});
+    folder_.startCsv(kOrderCurves, {"mesh", "view", "order", "records", "psnr"});
+    folder_.startCsv(kOrderTargetsCsv, {"mesh", "view", "order", "psnr", "records"});
   }
 
   Result<void> compare(EvaluatedMesh& mesh) {
@@ -156,21 +156,21 @@ class OrdersComparison {
   void note(const std::string& mesh, const std::string& view, const std::string& order,
             const std::string& what, const QualityCurve& curve) {
     for (const CurvePoint& point : curve)
-      folder_.addCsv(kCurves,
+      folder_.addCsv(kOrderCurves,
                      {mesh, view, order, std::to_string(point.records), numberText(point.psnr)});
     std::string line;
-    for (const double target : kTargets) {
+    for (const double target : kOrderTargets) {
       const std::optional<double> records = recordsTo(curve, target);
       const std::string decibels = numberText(target, 0);
       if (records)
-        folder_.addCsv(kTargetsCsv, {mesh, view, order, decibels, numberText(*records, 0)});
+        folder_.addCsv(kOrderTargetsCsv, {mesh, view, order, decibels, numberText(*records, 0)});
       Figure figure;
       figure.table = "Records to a PSNR, " + mesh + ", " + view + " view";
       figure.row = order;
       figure.column = decibels + " dB";
       figure.value = records;
       figure.unit = "records";
-      figure.csv = kTargetsCsv;
+      figure.csv = kOrderTargetsCsv;
       figure.note = records ? what : what + "; not reached";
       folder_.add(std::move(figure));
       line += " " + decibels + " dB " + (records ? numberText(*records, 0) : std::string("-"));
@@ -187,7 +187,7 @@ class OrdersComparison {
     plot.title = mesh + ", " + view + " view";
     plot.x = "records";
     plot.y = "PSNR, dB";
-    plot.csv = kCurves;
+    plot.csv = kOrderCurves;
     plot.xColumn = "records";
     plot.yColumn = "psnr";
     for (const std::string& order : orders)

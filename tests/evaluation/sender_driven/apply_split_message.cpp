@@ -9,8 +9,6 @@
 namespace meshfront::evaluation {
 namespace {
 
-constexpr unsigned kCountOrder = 8;
-
 // The decoder of a message. Everything in it is untrusted.
 class MessageApplication {
  public:
@@ -22,8 +20,8 @@ class MessageApplication {
     BitReader header(message_);
     const auto coding = header.read(2);
     criteria_ = header.readBit();
-    count_ = readExpGolomb(header, kCountOrder);
-    const uint64_t idBytes = readExpGolomb(header, kCountOrder);
+    count_ = readExpGolomb(header, kMessageCountOrder);
+    const uint64_t idBytes = readExpGolomb(header, kMessageCountOrder);
     const uint64_t idBegin = (header.position() + 7) / 8;
     if (header.overrun() || idBytes > message_.size() || idBegin > message_.size() - idBytes)
       return fail("a message of splits is cut short");

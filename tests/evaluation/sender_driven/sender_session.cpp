@@ -16,7 +16,6 @@ namespace {
 constexpr size_t kRound = 256;
 // Below a node with fewer nodes, a test costs more than it saves.
 constexpr uint32_t kWorthCulling = 12;
-constexpr unsigned kCountOrder = 8;  // of the counts in a message
 
 // Eighths of an octave, the largest first; 512 buckets.
 uint32_t errorBucket(float size) {
@@ -199,8 +198,8 @@ void SenderSession::writeMessage(Clock& clock) {
   out.reserve(16 + ids.size() + taken_.size() * 6);
   out.write(static_cast<unsigned>(options_.ids), 2);
   out.writeBit(options_.criteria);
-  writeExpGolomb(out, taken_.size(), kCountOrder);
-  writeExpGolomb(out, ids.size(), kCountOrder);
+  writeExpGolomb(out, taken_.size(), kMessageCountOrder);
+  writeExpGolomb(out, ids.size(), kMessageCountOrder);
   out.write(0, static_cast<unsigned>(-out.bitCount() & 7));
   if (!ids.empty()) out.append(ids, 0, 8 * ids.size());
   batch_.idBits = out.bitCount();

@@ -30,6 +30,8 @@
 
 namespace meshfront::evaluation {
 
+inline constexpr unsigned kMessageCountOrder = 8;  // Exp-Golomb, of the counts in a message
+
 enum class IdCoding : uint8_t { published, bitstring, adaptive };
 
 // What the adaptive coding has learned; both ends of a session hold one.
