@@ -50,7 +50,7 @@ class DelayedService final : public Transport {
 
   [[nodiscard]] Clock::time_point now() const { return now_; }
   [[nodiscard]] size_t underWay() const { return held_.size(); }
-  size_t most = 0;         // under way at a time
+  size_t most = 0;  // under way at a time
   std::vector<std::string> urls;
   uint64_t bytesSent = 0;  // of all answers, given up ones too
 
