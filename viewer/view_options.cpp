@@ -220,8 +220,9 @@ ParsedOptions parseViewOptions(int argc, char** argv) {
                  "any HTTP cache answers)")
       ->check(chosenFrom<FetchMode>({{"exact", FetchMode::exact}, {"chunks", FetchMode::chunks}},
                                     options.mode));
-  app.add_option("--rank", rankText,
-                 "what to ask for first: significance (level and what is likely wrong; default) or pixels")
+  app.add_option(
+         "--rank", rankText,
+         "what to ask for first: significance (level and what is likely wrong; default) or pixels")
       ->check(chosenFrom<RankOrder>(
           {{"significance", RankOrder::significance}, {"pixels", RankOrder::pixels}},
           options.order));
