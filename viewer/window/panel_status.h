@@ -98,7 +98,7 @@ struct PanelStatus {
   uint64_t resplits = 0;   // from what was kept
   std::optional<double> splitsPerSecond;
   std::optional<double> bitsPerSplit;
-  std::optional<double> cacheShare;  // of the records, those that the disk cache gave
+  std::optional<double> cacheShare;         // of the records, those that the disk cache gave
   std::optional<double> networkCacheShare;  // of the answers, those out of caches on the way
   std::optional<double> roundTrip;
   std::optional<double> rankingTime;
