@@ -153,7 +153,7 @@ class NarrowPartings {
   // [i]: between entries i and i + 1, twice round; never looked at behind that.
   std::array<uint8_t, 3 * kMost> depths_{};
   std::array<uint32_t, kMost + 1> starts_{};
-  __m128i lanes_;  // from the entry on at which runs start
+  __m128i lanes_{};  // from the entry on at which runs start
 };
 #endif
 

@@ -109,7 +109,7 @@ TEST_F(SenderSessionTest, SplitsAllThatIsVisible) {
     size_t visible = 0;
     for (const Triangle& corners : full.drawnCorners()) {
       if (corners[0] == corners[1]) continue;
-      std::array<glm::dvec3, 3> at;
+      std::array<glm::dvec3, 3> at{};
       bool inside = false;
       for (size_t i = 0; i < 3; ++i) {
         const auto world = model_.quantization().toWorld(full.positions()[corners[i]]);

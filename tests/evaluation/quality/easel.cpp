@@ -57,7 +57,7 @@ Result<std::span<const uint32_t>> Canvas::count() {
 }
 
 Result<double> psnrOf(const Picture& picture, const Picture& reference) {
-  const Result<double> psnr = peakSignalToNoise(picture, reference);
+  Result<double> psnr = peakSignalToNoise(picture, reference);
   if (!psnr) return psnr;
   return std::min(*psnr, kIdenticalPicturesPsnr);
 }

@@ -37,8 +37,8 @@ Result<void> evaluateQuality(const QualityCommand& command) {
     meshes.push_back(std::move(*mesh));
   }
   for (const std::string& experiment : command.experiments) {
-    const Result<void> done = experiment == "ways" ? compareWays(meshes, *easel, command.options)
-                                                   : compareOrders(meshes, *easel, command.options);
+    Result<void> done = experiment == "ways" ? compareWays(meshes, *easel, command.options)
+                                             : compareOrders(meshes, *easel, command.options);
     if (!done) return done;
   }
   const std::string errors = takeGlErrors();

@@ -24,6 +24,7 @@ constexpr int kProgramNotFound = 127;
 // Exit status, or kProgramNotFound; what it prints is dropped.
 int runQuietly(const std::vector<std::string>& command) {
   std::vector<char*> arguments;
+  arguments.reserve(command.size() + 1);
   for (const std::string& word : command) arguments.push_back(const_cast<char*>(word.c_str()));
   arguments.push_back(nullptr);
   posix_spawn_file_actions_t actions{};

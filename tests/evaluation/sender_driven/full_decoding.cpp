@@ -31,7 +31,7 @@ Result<void> FullDecoding::splitChunk(uint32_t number, std::span<const uint8_t> 
       const FaceSlot face = HalfEdgeMesh::faceOf(h);
       const Triangle& corners = mesh_.drawnCorners()[face];
       if (corners[0] == corners[1]) return;
-      std::array<glm::dvec3, 3> triangle;
+      std::array<glm::dvec3, 3> triangle{};
       for (size_t i = 0; i < 3; ++i) triangle[i] = gridPoint(mesh_.positions()[corners[i]]);
       ring_.push_back(triangle);
     });

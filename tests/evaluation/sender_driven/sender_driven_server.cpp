@@ -59,8 +59,8 @@ class Conversation {
       }
       const SentBatch& batch = session_->next(adaptiveBatch(session_->sentCount()));
       sending = !batch.splits.empty();
-      const auto sent = sending ? stream_.send(MessageKind::splits, batch.message)
-                                : stream_.send(MessageKind::settled, {});
+      auto sent = sending ? stream_.send(MessageKind::splits, batch.message)
+                          : stream_.send(MessageKind::settled, {});
       if (!sent) return sent;
     }
   }

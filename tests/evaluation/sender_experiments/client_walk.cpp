@@ -124,7 +124,7 @@ class PictureSeries {
   }
   Result<double> write(const char* kind, const char* way, DrawnClient& client, float tolerance,
                        uint64_t bytes) {
-    const auto value = psnr(client);
+    auto value = psnr(client);
     if (!value) return value;
     const std::string file = mesh_->name + "_" + kind + ".png";
     const auto picture = client.draw(camera_);

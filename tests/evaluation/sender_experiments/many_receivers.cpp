@@ -75,7 +75,7 @@ Result<void> measureReceivers(std::span<EvaluatedMesh> meshes, const ExperimentO
               "mesh,receivers,variant,views,records,requests,sender_seconds,service_seconds,"
               "sender_ms_a_receiver,service_ms_a_receiver,ratio,session_bytes_a_receiver");
   struct Variant {
-    const char* name;
+    const char* name = "";
     SenderOptions options;
   };
   const std::array variants{

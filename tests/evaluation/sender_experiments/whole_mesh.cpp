@@ -12,7 +12,7 @@ namespace meshfront::evaluation {
 namespace {
 
 struct SenderVariant {
-  const char* name;
+  const char* name = "";
   SenderOptions options;
 };
 

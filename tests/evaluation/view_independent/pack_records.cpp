@@ -86,7 +86,7 @@ Result<void> RefinedPack::split(RecordIndex index) {
   if (node == kNone || !mesh_.isActive(node))
     return fail("a node was to be split that is not active");
   const bool known = mesh_.leftChild(node) != kNone;
-  const Result<void> done =
+  Result<void> done =
       mesh_.split(node, pack_->chunk(record.chunk), record.entry.bitOffset, record.entry.bitLength);
   if (!done || known) return done;
   const NodeIndex left = mesh_.leftChild(node);
