@@ -95,7 +95,7 @@ ParsedLoadOptions parseLoadOptions(int argc, char** argv) {
       ->check(CLI::Range(0U, 100'000U).description(""))
       ->capture_default_str();
   app.add_option("--window", run.receiver.window,
-                 "requests under way of a receiver, 1 to 16; 0: 2 for exact sets, 4 for chunks")
+                 "requests under way of a receiver, 1 to 16; 0: 1 for exact sets, 4 for chunks")
       ->check(CLI::Range(0U, 16U).description(""))
       ->capture_default_str();
   app.add_option("--size", picture, "each receiver's picture in pixels (default 500x500)")

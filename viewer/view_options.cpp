@@ -237,7 +237,7 @@ ParsedOptions parseViewOptions(int argc, char** argv) {
   app.add_option(
          "--window", options.window,
          "requests under way at a time, 1 to 16; 0: as many as keep the link busy in a window, "
-         "else 2 for exact sets, 4 for chunks")
+         "else 1 for exact sets, 4 for chunks")
       ->check(CLI::Range(0U, 16U).description(""))
       ->capture_default_str();
   app.add_option("--screenshot", options.screenshot, "write the final picture as PNG");

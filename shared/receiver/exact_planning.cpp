@@ -4,6 +4,7 @@
 #include <chrono>
 
 #include "shared/receiver/exact_source.h"
+#include "shared/receiver/first_request.h"
 #include "shared/receiver/ranking.h"
 
 namespace meshfront {
@@ -21,38 +22,31 @@ constexpr double kFirstFlightBytes = 10 * 1'448;
 constexpr double kLikelyRecordBytes = 4;  // no answer has told yet
 constexpr std::chrono::milliseconds kTripWorthGuessing{10};
 
-// Records up to significance level `most` below a node of `level`, the node's own included: from
-// one octave to the next a mesh has twice the vertices.
-double recordsUpTo(unsigned most, unsigned level) {
-  return most < level ? 1 : static_cast<double>((uint64_t{2} << (most - level)) - 1);
-}
-
 }  // namespace
 
-// Up to which significance level descendants come along with the first wishes of all. On a long
-// link they cost no time, and spare a round trip for each generation of what comes first in the
-// ranking; what of it turns out not to be seen is some of kFirstFlightBytes. No more than the
-// pixels tell: a node that shows eight cannot need more than eight leaves.
-std::optional<uint8_t> ExactSource::firstSignificance(const std::vector<Wish>& chosen) const {
+// How many records the first answer may hold. On a long link more cost no time and spare further
+// round trips; what of them turns out not to be seen is some of kFirstFlightBytes.
+double ExactSource::firstRoom() const {
   const auto trip = to_.link.roundTrip();
-  if (to_.options.freshRanking || !to_.options.descendants || !trip || mesh_.splitsApplied() > 0 ||
-      to_.allowance.limited() || *trip < kTripWorthGuessing)
-    return std::nullopt;
+  if (to_.options.freshRanking || !trip || *trip < kTripWorthGuessing) return kFirstRecords;
   const double bytes = std::min(
       kLikelyBytesPerSecond * std::chrono::duration<double>(*trip).count(), kFirstFlightBytes);
-  const double room = bytes / kLikelyRecordBytes - static_cast<double>(pendingRecords());
+  return std::max(kFirstRecords, bytes / kLikelyRecordBytes);
+}
+
+std::optional<uint8_t> ExactSource::significanceAtFirst(const std::vector<Wish>& chosen) const {
+  if (!to_.options.descendants || mesh_.splitsApplied() > 0 || to_.allowance.limited())
+    return std::nullopt;
   const auto count = static_cast<double>(chosen.size());
   const double share = count / std::max(count, static_cast<double>(wished_));
-  double pixels = 0;
-  for (const Wish& wish : chosen) pixels += wish.pixels;
-  std::optional<uint8_t> best;
-  for (unsigned most = 0; most <= tables_->maxLevel; ++most) {
-    double records = 0;
-    for (const Wish& wish : chosen) records += recordsUpTo(most, mesh_.level(wish.node));
-    if (records > room * share || records + count > pixels) break;
-    if (records > count) best = static_cast<uint8_t>(most);
+  const double room = (firstRoom() - static_cast<double>(pendingRecords())) * share;
+  uint64_t pixels = 0;
+  std::vector<uint8_t> levels;
+  for (const Wish& wish : chosen) {
+    pixels += wish.pixels;
+    levels.push_back(static_cast<uint8_t>(mesh_.level(wish.node)));
   }
-  return best;
+  return firstSignificance(levels, pixels, room, tables_->maxLevel);
 }
 
 uint64_t ExactSource::likelyRecords(const RecordRequest& request) const {

@@ -8,7 +8,6 @@
 #include "shared/receiver/record_request.h"
 
 namespace meshfront {
-namespace {}  // namespace
 
 ExactSource::ExactSource(SourceSurroundings surroundings)
     : to_(std::move(surroundings)),
@@ -136,7 +135,7 @@ Expansion ExactSource::expansionFor(const std::vector<Wish>& chosen) const {
   if (expansionRefused_ || budget_.limited()) return expansion;
   // An answer of unknown length must not run into the allowance.
   if (queueExpansion_ && !to_.allowance.limited()) expansion.significance = queueExpansion_;
-  if (!queueExpansion_) expansion.significance = firstSignificance(chosen);
+  if (!queueExpansion_) expansion.significance = significanceAtFirst(chosen);
   if (!expansion.significance && !queueExpansion_) expansion.levels = levelsByNeed(chosen);
   return expansion;
 }

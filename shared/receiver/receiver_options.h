@@ -30,7 +30,7 @@ struct ReceiverOptions {
   RankOrder order = RankOrder::significance;
   Goal goal = Goal::settled;
   uint32_t batch = 0;  // exact: records a request; 0: adaptiveBatch()
-  // Requests under way; 0: 2 for exact sets, 4 for chunks, but without freshRanking as many as keep
+  // Requests under way; 0: 1 for exact sets, 4 for chunks, but without freshRanking as many as keep
   // the link busy (LinkMeter), 1..16. The transport should have as many slots.
   uint32_t window = 0;
   // After each answer advance() waits for a ranking before it applies the next one: the requests
@@ -39,7 +39,8 @@ struct ReceiverOptions {
   // depends on time (the window, descendants by need, dropping what a view no longer shows) is done
   // only then.
   bool freshRanking = true;
-  // Without freshRanking: asks for descendants too where the wishes would leave the link idle.
+  // Asks for descendants too: with the first request of all (first_request.h) and, without
+  // freshRanking, where the wishes would leave the link idle.
   bool descendants = true;
   // Degrades when something is under way and nothing has come for so long; 0: never.
   std::chrono::milliseconds patience{30'000};

@@ -9,7 +9,7 @@
 namespace meshfront {
 namespace {
 
-constexpr uint32_t kExactWindow = 2;
+constexpr uint32_t kExactWindow = 1;
 constexpr uint32_t kChunkWindow = 4;  // chunks are smaller than batches
 
 }  // namespace

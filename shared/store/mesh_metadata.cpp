@@ -144,7 +144,8 @@ std::string toJson(const MeshMetadata& m) {
       {"chunkCount", m.chunkCount},
       {"links", linksOf(m)},
   };
-  return out.dump(2, ' ', false, json::error_handler_t::replace) + "\n";
+  // Without blanks: these octets stand before the first picture.
+  return out.dump(-1, ' ', false, json::error_handler_t::replace) + "\n";
 }
 
 std::string catalogueJson(std::span<const MeshMetadata> meshes) {

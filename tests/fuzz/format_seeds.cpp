@@ -126,7 +126,6 @@ std::string packSeed(const PackContent& content) {
   metadata.revision = revisionOf(content);
   metadata.chunkCount = static_cast<uint32_t>(content.chunks.size());
   std::string json = toJson(metadata);
-  std::erase_if(json, [](char c) { return c == '\n' || c == ' '; });
   const size_t links = json.find("\"links\"");  // which nobody reads back
   json.erase(links, json.find("\"maxDepth\"") - links);
   add(0, json);

@@ -44,7 +44,7 @@ class Origin:
         self.deep, self.wide = (self.fixed_part(mesh) for mesh in ("deep", "wide"))
 
     def fixed_part(self, mesh):
-        link = ask(self.ports[0], f"/v1/meshes/{mesh}").body.decode().split('"base": "')[1]
+        link = ask(self.ports[0], f"/v1/meshes/{mesh}").body.decode().split('"base":"')[1]
         return link[:link.index("/base")]
 
     def body(self, target, method="GET", content=None):

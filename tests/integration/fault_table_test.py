@@ -176,7 +176,7 @@ class Prober:
 
 
 def fixed_part(port):
-    link = ask(port, "/v1/meshes/mesh").body.decode().split('"base": "')[1]
+    link = ask(port, "/v1/meshes/mesh").body.decode().split('"base":"')[1]
     return link[:link.index("/base")]
 
 

@@ -59,7 +59,7 @@ class ProxyChain(unittest.TestCase):
                               "--listen", "127.0.0.1:0")
         cls.inner = cls.proxy_of(cls.service.port)
         cls.outer = cls.proxy_of(cls.inner.port)
-        link = ask(cls.service.port, "/v1/meshes/mesh").body.decode().split('"base": "')[1]
+        link = ask(cls.service.port, "/v1/meshes/mesh").body.decode().split('"base":"')[1]
         cls.fixed = link[:link.index("/base")]
         roots = [(tree, "") for tree in range(40)
                  if ask(cls.service.port, f"{cls.fixed}/splits/{ids([(tree, '')])}").status == 200]

@@ -84,12 +84,12 @@ TEST(MeshMetadata, RefusesWrongTypesAndRanges) {
     EXPECT_NE(at, std::string::npos) << from;
     return changed.replace(at, from.size(), to);
   };
-  EXPECT_FALSE(metadataFromJson(with("\"maxLevel\": 16", "\"maxLevel\": -1")));
-  EXPECT_FALSE(metadataFromJson(with("\"maxLevel\": 16", "\"maxLevel\": 4294967296")));
-  EXPECT_FALSE(metadataFromJson(with("\"bits\": 14", "\"bits\": 21")));
-  EXPECT_FALSE(metadataFromJson(with("\"bits\": 14", "\"bits\": \"14\"")));
-  EXPECT_FALSE(metadataFromJson(with("\"step\": 9", "\"step\": -9")));
-  EXPECT_FALSE(metadataFromJson(with("\"name\": \"bunny-1.0_a\"", "\"name\": \"../a\"")));
+  EXPECT_FALSE(metadataFromJson(with("\"maxLevel\":16", "\"maxLevel\":-1")));
+  EXPECT_FALSE(metadataFromJson(with("\"maxLevel\":16", "\"maxLevel\":4294967296")));
+  EXPECT_FALSE(metadataFromJson(with("\"bits\":14", "\"bits\":21")));
+  EXPECT_FALSE(metadataFromJson(with("\"bits\":14", "\"bits\":\"14\"")));
+  EXPECT_FALSE(metadataFromJson(with("\"step\":9", "\"step\":-9")));
+  EXPECT_FALSE(metadataFromJson(with("\"name\":\"bunny-1.0_a\"", "\"name\":\"../a\"")));
   EXPECT_FALSE(metadataFromJson(with("0123456789abcdef\"", "0123456789abcdeF\"")));
 }
 

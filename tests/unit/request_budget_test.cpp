@@ -37,7 +37,7 @@ TEST(RequestBudget, LearnsWhatARecordTakes) {
 
 TEST(AdaptiveBatch, GrowsWithTheMesh) {
   EXPECT_EQ(adaptiveBatch(0), kSmallestAdaptiveBatch);
-  EXPECT_EQ(adaptiveBatch(8'000), 1'000U);
+  EXPECT_EQ(adaptiveBatch(4'000), 1'000U);
   EXPECT_EQ(adaptiveBatch(1'000'000), kLargestAdaptiveBatch);
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "shared/receiver/first_request.h"
 #include "shared/receiver/request_budget.h"
 
 namespace meshfront::evaluation {
@@ -50,10 +51,9 @@ Result<bool> ReceiverWay::advance(uint64_t) {
   if (flights_.empty()) return false;
   const Flight flight = std::move(flights_.front());
   flights_.pop_front();
-  for (const NodeIndex node : flight.nodes)
-    if (Result<void> done = refined_.split(refined_.recordOf(node)); !done)
-      return tl::unexpected(done.error());
-  cost_.records += flight.nodes.size();
+  if (Result<void> done = refined_.splitAll(flight.records); !done)
+    return tl::unexpected(done.error());
+  cost_.records += flight.records.size();
   cost_.bytesDown += flight.bytes.down;
   cost_.bytesUp += flight.bytes.up;
   if (Result<void> ranked = rank(); !ranked) return tl::unexpected(ranked.error());
@@ -104,23 +104,41 @@ std::vector<Candidate> ReceiverWay::restCandidates(std::span<const uint32_t> pix
   return beside.empty() && goal_ == ReceiverGoal::all ? all : beside;
 }
 
+// Those that a request up to this level brings along.
+void ReceiverWay::addDescendants(Flight& flight, unsigned significance) const {
+  const std::span<const PackRecord> records = refined_.pack().records();
+  for (size_t next = 0; next < flight.records.size(); ++next)
+    for (const RecordIndex child : records[flight.records[next]].children)
+      if (child != kNoRecord && records[child].entry.level <= significance)
+        flight.records.push_back(child);
+}
+
 Result<void> ReceiverWay::send(std::span<const Candidate> chosen) {
   std::vector<Candidate> sorted(chosen.begin(), chosen.end());
   std::sort(sorted.begin(), sorted.end(),
             [](const Candidate& a, const Candidate& b) { return a.id < b.id; });
   Flight flight;
   RecordRequest request;
+  uint64_t pixels = 0;
   for (const Candidate& candidate : sorted) {
-    flight.nodes.push_back(candidate.node);
+    flight.records.push_back(refined_.recordOf(candidate.node));
     busy_[candidate.node] = 1;
     request.nodes.push_back(candidate.id);
+    request.levels.push_back(static_cast<uint8_t>(refined_.mesh().level(candidate.node)));
+    pixels += candidate.pixels;
+  }
+  const bool isFirst = refined_.mesh().splitsApplied() == 0 && flights_.empty();
+  if (isFirst && options_.service != nullptr && options_.allowed.empty()) {
+    request.expansion.significance = firstSignificance(request.levels, pixels, kFirstRecords,
+                                                       refined_.pack().metadata().maxLevel);
+    if (request.expansion.significance) addDescendants(flight, *request.expansion.significance);
   }
   if (options_.service != nullptr) {
     const Result<ExchangeBytes> bytes = options_.service->records(request);
     if (!bytes) return tl::unexpected(bytes.error());
     flight.bytes = *bytes;
   } else {
-    flight.bytes.down = sorted.size();
+    flight.bytes.down = flight.records.size();
   }
   flights_.push_back(std::move(flight));
   return {};

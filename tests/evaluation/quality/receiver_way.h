@@ -1,5 +1,6 @@
-// Receiver-driven, as the viewer does it without a window: two requests under way, a fresh ranking
-// after each answer, batches of adaptiveBatch(). Beyond what the viewer does, the order may be any.
+// Receiver-driven, as the viewer does it without a window: one request under way, a fresh ranking
+// after each answer, batches of adaptiveBatch(), and descendants with the first request
+// (first_request.h). Beyond what the viewer does, the order may be any.
 #pragma once
 
 #include <deque>
@@ -21,9 +22,9 @@ enum class ReceiverGoal {
 
 struct ReceiverWayOptions {
   uint32_t batch = 0;   // records a request; 0: adaptiveBatch()
-  uint32_t window = 2;  // requests under way
+  uint32_t window = 1;  // requests under way
   // Counts octets; null: every record counts as one byte, and the base as 1, for experiments that
-  // count records alone.
+  // count records alone, each asked for by itself.
   CountedService* service = nullptr;
   // By record: 0 = a leaf as far as this way goes. Empty: all are there.
   std::span<const uint8_t> allowed{};
@@ -45,7 +46,7 @@ class ReceiverWay final : public Way {
 
  private:
   struct Flight {
-    std::vector<NodeIndex> nodes;  // in preorder of their IDs
+    std::vector<RecordIndex> records;  // parents before their children
     ExchangeBytes bytes;
   };
   ReceiverWay(RefinedPack refined, const ReceiverOrder& order, Easel& easel,
@@ -53,6 +54,7 @@ class ReceiverWay final : public Way {
   Result<void> rank();
   Result<void> send(std::span<const Candidate> chosen);
   [[nodiscard]] std::vector<Candidate> restCandidates(std::span<const uint32_t> pixels) const;
+  void addDescendants(Flight& flight, unsigned significance) const;
   [[nodiscard]] bool isAllowed(NodeIndex node) const;
 
   const ReceiverOrder order_;
