@@ -62,10 +62,6 @@ struct FrontOutcome {
 class FrontBudget {
  public:
   explicit FrontBudget(const FrontLimits& limits) : limits_(limits) {}
-  void setLimits(const FrontLimits& limits) {
-    limits_ = limits;
-    view_.reset();  // everything may go
-  }
   [[nodiscard]] const FrontLimits& limits() const { return limits_; }
 
   // Plans by fresh counts; O(vertices) of the fronts. The meshes stay where they are, in the same

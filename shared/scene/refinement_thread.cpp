@@ -83,12 +83,6 @@ std::optional<VertexDescription> RefinementThread::describe(size_t mesh, uint32_
   return description_;
 }
 
-void RefinementThread::resumeNow() {
-  const std::lock_guard lock(mutex_);
-  inputs_.resume = true;
-  wake_.notify_one();
-}
-
 // --- the refinement thread -----------------------------------------------------------------------
 
 void RefinementThread::run() {
@@ -102,7 +96,7 @@ std::optional<RefinementThread::Inputs> RefinementThread::waitForInputs(bool bus
   std::unique_lock lock(mutex_);
   const auto due = [this] {
     return stopping_ || arrived_ || inputs_.counts || inputs_.ahead || inputs_.spot ||
-           inputs_.describe || inputs_.resume;
+           inputs_.describe;
   };
   if (!busy) wake_.wait_for(lock, kIdleWait, due);
   arrived_ = false;
@@ -135,7 +129,7 @@ bool RefinementThread::work(Inputs inputs) {
     const bool finished = scene_.advance(kSplitsAtATime);
     busy = finished || scene_.changeCount() != before;
   }
-  scene_.tendLost(AutomaticResume::Clock::now(), inputs.resume);
+  scene_.tendLost(AutomaticResume::Clock::now());
   tell();
   publish();
   return busy;

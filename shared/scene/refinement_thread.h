@@ -55,7 +55,6 @@ class RefinementThread {
   // Waits for the thread, at most so long; nullopt for a slot that is free, or if it takes longer.
   [[nodiscard]] std::optional<VertexDescription> describe(size_t mesh, uint32_t slot,
                                                           std::chrono::milliseconds longest);
-  void resumeNow();  // does not wait for the next attempt where a server was lost
 
   // Ends the thread; the scene as it was left. Call once.
   [[nodiscard]] SceneReceiver& stop();
@@ -66,7 +65,6 @@ class RefinementThread {
     std::optional<SceneCounts> ahead;
     std::optional<std::optional<RefinedSpot>> spot;
     std::optional<std::pair<size_t, uint32_t>> describe;
-    bool resume = false;
   };
   [[nodiscard]] SceneOptions waking(SceneOptions options);
   void run();

@@ -289,7 +289,6 @@ TEST_F(SceneTest, AThreadTakesUpAgainWhenTheServerIsBack) {
   EXPECT_NE(lost.reason.find("refused"), std::string::npos);
   ASSERT_TRUE(lost.secondsToResume || thread.status().secondsToResume);
   transport.setAway(false);
-  thread.resumeNow();
   onlooker.lookUntil(ReceiverState::complete);
 }
 
