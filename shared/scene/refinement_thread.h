@@ -19,6 +19,7 @@
 #include <mutex>
 #include <optional>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "shared/scene/mesh_news.h"
@@ -81,10 +82,11 @@ class RefinementThread {
   Inputs inputs_;
   bool stopping_ = false;
   bool arrived_ = false;
+  bool newsTaken_ = false;
   std::vector<MeshNews> news_;
   SceneStatus status_;
   std::condition_variable described_;
-  bool isDescribed_ = false;
+  std::optional<std::pair<size_t, uint32_t>> describedPlace_;  // that description_ is of
   std::optional<VertexDescription> description_;
 
   // The thread's alone.
