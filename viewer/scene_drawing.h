@@ -94,7 +94,6 @@ class SceneDrawing {
   [[nodiscard]] const MeshRenderer& renderer() const { return renderer_; }
   [[nodiscard]] unsigned finestLevel() const { return finestLevel_; }
   [[nodiscard]] const MeshMetadata& metadata(size_t mesh) const { return *meshes_[mesh].metadata; }
-  [[nodiscard]] size_t gpuBytes() const;
 
  private:
   struct Drawn {

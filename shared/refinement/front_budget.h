@@ -55,8 +55,6 @@ struct FrontOutcome {
   std::vector<std::vector<NodeId>> forgotten;
   // There is more to do for the counts of the last look().
   bool more = false;
-
-  [[nodiscard]] bool changed() const { return collapses + resplits > 0; }
 };
 
 class FrontBudget {
