@@ -73,7 +73,7 @@ class FlownMeshes final : public FlownScene {
         return options_.pace == FlightPace::real ? Outlook::stuck : Outlook::more;
     }
     // A new view is ranked even where the last one had settled.
-    const bool changed = rankedFor_ != camera || rankedAt_ != scene_.changeCount();
+    const bool changed = rankedAt_ != scene_.changeCount();
     if (rankedFor_ != camera || (changed && (scene_.wantsRanking() || scene_.hasBudgets()))) {
       const auto counts = picture_->count(scene_, camera, style_);
       if (!counts) return tl::unexpected(counts.error());
@@ -91,7 +91,8 @@ class FlownMeshes final : public FlownScene {
   }
   Result<std::optional<double>> psnr(const Camera& camera, const Picture& picture) override {
     if (!options_.reference) return std::nullopt;
-    const auto reference = drawReference(*options_.reference, *picture_, camera, options_.colours);
+    const auto reference = drawReference(*options_.reference, *picture_, camera, options_.colours,
+                                         scene_.receiver(0).mesh()->attributeLayout().normalBits);
     if (!reference) return tl::unexpected(reference.error());
     const Result<double> measured = peakSignalToNoise(picture, *reference);
     if (!measured) return tl::unexpected(measured.error());

@@ -14,6 +14,6 @@ namespace meshfront {
 
 [[nodiscard]] Result<Picture> drawReference(const std::filesystem::path& meshFile,
                                             ScenePicture& picture, const Camera& camera,
-                                            bool colours, unsigned normalBits = 0);
+                                            bool colours, unsigned normalBits);
 
 }  // namespace meshfront

@@ -94,12 +94,6 @@ double SceneDrawing::slidesUntil(double slideSeconds) const {
   return meshfront::slidesUntil(instances_, slideSeconds);
 }
 
-size_t SceneDrawing::gpuBytes() const {
-  size_t bytes = counter_.byteCount();
-  for (const MeshInstance& one : instances_) bytes += one.mesh->byteCount();
-  return bytes;
-}
-
 void SceneDrawing::draw(RenderTarget& target, const Camera& camera, const Bounds& bounds,
                         DrawStyle style, bool missing, double seconds) {
   style.finestLevel = finestLevel_;

@@ -71,11 +71,12 @@ class SceneDrawing {
   Result<bool> startPass(const Camera& camera, const Bounds& bounds, PixelSize picture, int divisor,
                          const DrawStyle& style, double seconds, bool ahead);
   [[nodiscard]] std::optional<SceneCounts> takePass();
-  // What the last count took: on the GPU, or here where it is done here; 0 before the first.
   // Counts are under way.
   [[nodiscard]] bool isCounting() const {
     return counter_.underWay() > 0 || pass_.counter().underWay() > 0;
   }
+  // What the last count of a whole picture took: on the GPU, or here where it is done here; 0
+  // before the first.
   [[nodiscard]] double countSeconds() {
     return counter_.method() == PixelCounter::Method::readBack
                ? countSeconds_
@@ -93,7 +94,6 @@ class SceneDrawing {
   [[nodiscard]] const MeshRenderer& renderer() const { return renderer_; }
   [[nodiscard]] unsigned finestLevel() const { return finestLevel_; }
   [[nodiscard]] const MeshMetadata& metadata(size_t mesh) const { return *meshes_[mesh].metadata; }
-  [[nodiscard]] size_t gpuBytes() const;
 
  private:
   struct Drawn {

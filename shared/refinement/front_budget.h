@@ -55,17 +55,11 @@ struct FrontOutcome {
   std::vector<std::vector<NodeId>> forgotten;
   // There is more to do for the counts of the last look().
   bool more = false;
-
-  [[nodiscard]] bool changed() const { return collapses + resplits > 0; }
 };
 
 class FrontBudget {
  public:
   explicit FrontBudget(const FrontLimits& limits) : limits_(limits) {}
-  void setLimits(const FrontLimits& limits) {
-    limits_ = limits;
-    view_.reset();  // everything may go
-  }
   [[nodiscard]] const FrontLimits& limits() const { return limits_; }
 
   // Plans by fresh counts; O(vertices) of the fronts. The meshes stay where they are, in the same

@@ -163,10 +163,6 @@ class SelectivelyRefinedMesh {
     return base_.tables.attributes.layout;
   }
   [[nodiscard]] std::span<const VertexAttributes> attributes() const { return attributes_.span(); }
-  // The same if there are colours among it, else empty.
-  [[nodiscard]] std::span<const VertexAttributes> coloured() const {
-    return attributeLayout().colours ? attributes() : std::span<const VertexAttributes>();
-  }
 
   // What has changed since the last call, for a drawer that keeps a copy. The first call gives the
   // whole mesh and starts the tracking, so that what never calls it does not pay. Takes time in

@@ -52,7 +52,10 @@ SceneReceiver& RefinementThread::stop() {
 
 std::vector<MeshNews> RefinementThread::takeNews() {
   const std::lock_guard lock(mutex_);
-  if (!news_.empty()) wake_.notify_one();
+  if (!news_.empty()) {
+    newsTaken_ = true;
+    wake_.notify_one();
+  }
   return std::exchange(news_, {});
 }
 
@@ -76,17 +79,14 @@ void RefinementThread::refineFirst(std::optional<RefinedSpot> spot) {
 std::optional<VertexDescription> RefinementThread::describe(size_t mesh, uint32_t slot,
                                                             milliseconds longest) {
   std::unique_lock lock(mutex_);
-  inputs_.describe = {mesh, slot};
-  isDescribed_ = false;
+  const std::pair place(mesh, slot);
+  inputs_.describe = place;
+  describedPlace_.reset();
   wake_.notify_one();
-  if (!described_.wait_for(lock, longest, [this] { return isDescribed_; })) return std::nullopt;
+  // What is described late, for a call that has given up, is of another place.
+  const auto isDescribed = [&] { return describedPlace_ == place; };
+  if (!described_.wait_for(lock, longest, isDescribed)) return std::nullopt;
   return description_;
-}
-
-void RefinementThread::resumeNow() {
-  const std::lock_guard lock(mutex_);
-  inputs_.resume = true;
-  wake_.notify_one();
 }
 
 // --- the refinement thread -----------------------------------------------------------------------
@@ -101,11 +101,11 @@ void RefinementThread::run() {
 std::optional<RefinementThread::Inputs> RefinementThread::waitForInputs(bool busy) {
   std::unique_lock lock(mutex_);
   const auto due = [this] {
-    return stopping_ || arrived_ || inputs_.counts || inputs_.ahead || inputs_.spot ||
-           inputs_.describe || inputs_.resume;
+    return stopping_ || arrived_ || newsTaken_ || inputs_.counts || inputs_.ahead || inputs_.spot ||
+           inputs_.describe;
   };
   if (!busy) wake_.wait_for(lock, kIdleWait, due);
-  arrived_ = false;
+  arrived_ = newsTaken_ = false;
   if (stopping_) return std::nullopt;
   return std::exchange(inputs_, {});
 }
@@ -117,7 +117,7 @@ bool RefinementThread::work(Inputs inputs) {
     const auto description = described(inputs.describe->first, inputs.describe->second);
     const std::lock_guard lock(mutex_);
     description_ = description;
-    isDescribed_ = true;
+    describedPlace_ = inputs.describe;
     described_.notify_one();
   }
   if (inputs.ahead) scene_.rank(*inputs.ahead);
@@ -135,7 +135,7 @@ bool RefinementThread::work(Inputs inputs) {
     const bool finished = scene_.advance(kSplitsAtATime);
     busy = finished || scene_.changeCount() != before;
   }
-  scene_.tendLost(AutomaticResume::Clock::now(), inputs.resume);
+  scene_.tendLost(AutomaticResume::Clock::now());
   tell();
   publish();
   return busy;

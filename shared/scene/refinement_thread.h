@@ -19,6 +19,7 @@
 #include <mutex>
 #include <optional>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "shared/scene/mesh_news.h"
@@ -55,7 +56,6 @@ class RefinementThread {
   // Waits for the thread, at most so long; nullopt for a slot that is free, or if it takes longer.
   [[nodiscard]] std::optional<VertexDescription> describe(size_t mesh, uint32_t slot,
                                                           std::chrono::milliseconds longest);
-  void resumeNow();  // does not wait for the next attempt where a server was lost
 
   // Ends the thread; the scene as it was left. Call once.
   [[nodiscard]] SceneReceiver& stop();
@@ -66,7 +66,6 @@ class RefinementThread {
     std::optional<SceneCounts> ahead;
     std::optional<std::optional<RefinedSpot>> spot;
     std::optional<std::pair<size_t, uint32_t>> describe;
-    bool resume = false;
   };
   [[nodiscard]] SceneOptions waking(SceneOptions options);
   void run();
@@ -83,10 +82,11 @@ class RefinementThread {
   Inputs inputs_;
   bool stopping_ = false;
   bool arrived_ = false;
+  bool newsTaken_ = false;
   std::vector<MeshNews> news_;
   SceneStatus status_;
   std::condition_variable described_;
-  bool isDescribed_ = false;
+  std::optional<std::pair<size_t, uint32_t>> describedPlace_;  // that description_ is of
   std::optional<VertexDescription> description_;
 
   // The thread's alone.

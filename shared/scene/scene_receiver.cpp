@@ -314,13 +314,8 @@ void SceneReceiver::rankAhead(const SceneCounts& counts) {
   }
 }
 
-void SceneReceiver::tendLost(AutomaticResume::Clock::time_point now, bool atOnce) {
-  for (MeshOfScene& mesh : meshes_) {
-    if (atOnce && mesh.receiver->state() == ReceiverState::degraded)
-      (void)mesh.receiver->resume();
-    else
-      (void)mesh.resume.tend(*mesh.receiver, now);
-  }
+void SceneReceiver::tendLost(AutomaticResume::Clock::time_point now) {
+  for (MeshOfScene& mesh : meshes_) (void)mesh.resume.tend(*mesh.receiver, now);
 }
 
 std::optional<std::chrono::milliseconds> SceneReceiver::nextResumeAfter(
@@ -341,12 +336,6 @@ uint64_t SceneReceiver::changeCount() const {
   for (const MeshOfScene& mesh : meshes_)
     if (const auto* front = mesh.receiver->mesh()) changes += front->changeCount();
   return changes;
-}
-
-uint64_t SceneReceiver::recordsReceived() const {
-  uint64_t records = 0;
-  for (const MeshOfScene& mesh : meshes_) records += mesh.receiver->statistics().records;
-  return records;
 }
 
 SceneStatus SceneReceiver::status() const {

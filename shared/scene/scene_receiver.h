@@ -65,15 +65,14 @@ class SceneReceiver {
   // Counts of a view that may come (SceneCounts::ahead) are for spare bandwidth alone.
   void rank(const SceneCounts& counts);
 
-  [[nodiscard]] uint64_t changeCount() const;      // of all meshes, summed
-  [[nodiscard]] uint64_t recordsReceived() const;  // likewise
+  [[nodiscard]] uint64_t changeCount() const;  // of all meshes, summed
   // Of the meshes that have changed since the last call.
   [[nodiscard]] std::vector<MeshNews> takeNews();
   [[nodiscard]] uint64_t changesUntold() const;  // splits and collapses, of all meshes
   // Wanted first from the next ranking on; nullopt: nothing special.
   void refineFirst(std::optional<RefinedSpot> spot) { spot_ = spot; }
-  // Tries again where a server was lost, after waits that grow; `atOnce`: now.
-  void tendLost(AutomaticResume::Clock::time_point now, bool atOnce = false);
+  // Tries again where a server was lost, after waits that grow.
+  void tendLost(AutomaticResume::Clock::time_point now);
   // How long until the next attempt; nullopt while no server is lost.
   [[nodiscard]] std::optional<std::chrono::milliseconds> nextResumeAfter(
       AutomaticResume::Clock::time_point now) const;

@@ -10,7 +10,6 @@ a time, and the origin's own counters are read when there have been 1, 3, 10, 30
 exact sets are fetched or chunks. Writes DIR/caching: caching.csv, figures.json and plots.json.
 """
 
-import argparse
 import contextlib
 import json
 import pathlib
@@ -21,6 +20,8 @@ import time
 import urllib.request
 
 import beside_bench  # noqa: F401  (finds tests/bench)
+from encoded_meshes import encode, mesh_name
+from experiment_command import experiment_parser
 from experiment_files import ExperimentFiles
 from fetch_modes import Nginx
 from random_views import write_views
@@ -99,21 +100,14 @@ def tell(files, mesh):
 
 
 def main():
-    arguments = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    arguments.add_argument("meshes", nargs="+", type=pathlib.Path, metavar="MESH")
-    arguments.add_argument("--output", type=pathlib.Path, required=True, metavar="DIR", help="a folder caching is written there")
-    arguments.add_argument("--bin", type=pathlib.Path, default=pathlib.Path("build/bin"))
-    arguments.add_argument("--short", action="store_true")
-    options = arguments.parse_args()
+    options = experiment_parser(__doc__, "caching").parse_args()
     files = ExperimentFiles(options.output / "caching")
     with tempfile.TemporaryDirectory() as folder:
         packs = pathlib.Path(folder)
         names = []
         for path in options.meshes:
-            names.append(path.name.split(".")[0])
-            encoded = run(options.bin / "meshfront-encode", path, "--output", packs / f"{names[-1]}.pack")
-            if encoded.returncode != 0:
-                sys.exit(encoded.stderr)
+            names.append(mesh_name(path))
+            encode(options.bin, path, packs / f"{names[-1]}.pack")
         write_views(packs / "views.txt", VIEWS)
         with Server(options.bin / "meshfront-serve", "--packs", packs, "--listen", "127.0.0.1:0") as service:
             for name in names:

@@ -9,7 +9,6 @@ taken from DIR/quality_against_bytes/bytes_to_psnr.csv (experiment 3); without i
 link is made. Writes DIR/network: network.csv, links.csv, figures.json and plots.json.
 """
 
-import argparse
 import contextlib
 import csv
 import json
@@ -21,6 +20,8 @@ import time
 
 import beside_bench  # noqa: F401  (finds tests/bench)
 import links
+from encoded_meshes import encode, mesh_name, succeed
+from experiment_command import experiment_parser
 from experiment_files import ExperimentFiles
 from served_programs import run
 from timed_ways import TARGET, CameraFirst, Draco, Pipe, ReceiverDriven, SenderDriven
@@ -55,26 +56,19 @@ def needed(results, mesh, way):
     return None
 
 
-def encode(programs, mesh, pack):
-    for command in ((programs / "meshfront-encode", mesh, "--output", pack, "--quantization", BITS),
-                    (programs / "meshfront-pack", "info", pack, "--json")):
-        done = run(*command)
-        if done.returncode != 0:
-            sys.exit(f"{command[0]}: {done.stderr.strip()}")
-    return json.loads(done.stdout)["metadata"]
-
-
 def ways_of(mesh, options, folder, stack):
     """The ways that can be timed here, each started."""
-    name = mesh.name.split(".")[0]
+    name = mesh_name(mesh)
     packs, files = folder / "packs", folder / "files"
     packs.mkdir()
     files.mkdir()
-    metadata = encode(options.bin, mesh, packs / f"{name}.pack")
+    pack = packs / f"{name}.pack"
+    encode(options.bin, mesh, pack, "--quantization", BITS)
+    metadata = json.loads(succeed(options.bin / "meshfront-pack", "info", pack, "--json"))["metadata"]
     ways = [ReceiverDriven(options.bin, packs, mesh)]
     target = needed(options.results, name, "sender")
     if target and (options.bin / "sender-driven-server").is_file():
-        ways += [way(options.bin, packs / f"{name}.pack", target[0]) for way in (SenderDriven, CameraFirst)]
+        ways += [way(options.bin, pack, target[0]) for way in (SenderDriven, CameraFirst)]
     target = needed(options.results, name, "view-independent")
     if target:
         ways.append(Pipe(files, target[0], metadata["baseBytes"] + metadata["recordBytes"]))
@@ -87,7 +81,7 @@ def ways_of(mesh, options, folder, stack):
 
 
 def time_mesh(mesh, cells, options, files):
-    name = mesh.name.split(".")[0]
+    name = mesh_name(mesh)
     with tempfile.TemporaryDirectory() as folder, contextlib.ExitStack() as stack:
         ways = ways_of(mesh, options, pathlib.Path(folder), stack)
         for rtt, mbit in cells:
@@ -142,12 +136,8 @@ def tell(files, name):
 
 
 def main():
-    arguments = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    arguments.add_argument("meshes", nargs="+", type=pathlib.Path, metavar="MESH")
-    arguments.add_argument("--output", type=pathlib.Path, required=True, metavar="DIR", help="a folder network is written there")
-    arguments.add_argument("--bin", type=pathlib.Path, default=pathlib.Path("build/bin"))
+    arguments = experiment_parser(__doc__, "network")
     arguments.add_argument("--results", type=pathlib.Path, metavar="DIR", help="of the other experiments")
-    arguments.add_argument("--short", action="store_true")
     options = arguments.parse_args()
     cells = [(None, None)] + [(rtt, mbit) for rtt in ROUND_TRIPS for mbit in MEGABITS]
     if options.short:
@@ -157,7 +147,7 @@ def main():
     tell_links(cells, files)
     for mesh in options.meshes:
         time_mesh(mesh, cells, options, files)
-        tell(files, mesh.name.split(".")[0])
+        tell(files, mesh_name(mesh))
     files.write()
     return 0
 

@@ -8,7 +8,6 @@ Our octets are those of meshfront-view and meshfront-serve. Writes DIR/sender: C
 figures.json, plots.json and pictures.json.
 """
 
-import argparse
 import csv
 import json
 import pathlib
@@ -19,6 +18,8 @@ import tempfile
 import time
 
 import beside_bench  # noqa: F401  (finds tests/bench)
+from encoded_meshes import encode, mesh_name
+from experiment_command import experiment_parser
 from experiment_files import ExperimentFiles
 from sender_figures import tell_all
 from served_programs import Server, run
@@ -73,12 +74,7 @@ def our_walk(programs, service, mesh, path, folder, files):
 
 
 def main():
-    arguments = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    arguments.add_argument("meshes", nargs="+", type=pathlib.Path, metavar="MESH")
-    arguments.add_argument("--output", type=pathlib.Path, required=True, metavar="DIR", help="a folder sender is written there")
-    arguments.add_argument("--bin", type=pathlib.Path, default=pathlib.Path("build/bin"))
-    arguments.add_argument("--short", action="store_true")
-    options = arguments.parse_args()
+    options = experiment_parser(__doc__, "sender").parse_args()
     output = options.output / "sender"
     files = ExperimentFiles(output)
     with tempfile.TemporaryDirectory() as temporary:
@@ -89,10 +85,8 @@ def main():
         path.write_text(json.dumps(camera_path(SHORT_FRAMES if options.short else FRAMES)))
         names = []
         for mesh in options.meshes:
-            names.append(mesh.name.split(".")[0])
-            encoded = run(options.bin / "meshfront-encode", mesh, "--output", packs / f"{names[-1]}.pack")
-            if encoded.returncode != 0:
-                sys.exit(encoded.stderr)
+            names.append(mesh_name(mesh))
+            encode(options.bin, mesh, packs / f"{names[-1]}.pack")
         headers = []
         with Server(options.bin / "meshfront-serve", "--packs", packs, "--listen", "127.0.0.1:0") as service:
             for name in names:

@@ -7,7 +7,6 @@ Encodes each mesh with --balance 0, 1 and 2 (in the short form 0 and 1); the oth
 the default, 1. Writes DIR/tables: ids.csv, depths.csv, fields.csv, speed.csv, figures.json and plots.json.
 """
 
-import argparse
 import json
 import math
 import pathlib
@@ -15,9 +14,9 @@ import re
 import sys
 import tempfile
 
-import beside_bench  # noqa: F401  (finds tests/bench)
+from encoded_meshes import encode, mesh_name, succeed
+from experiment_command import experiment_parser
 from experiment_files import ExperimentFiles
-from served_programs import run
 
 # What a record is made of, and what stands beside it: Cheng and Ooi 2008, section 5.2, on the Happy Buddha.
 FIELDS = (
@@ -41,23 +40,12 @@ SPEED = ("Parsed, decoded and applied from bytes as they come. Hoppe's Table 2 (
 AGAIN = "What the viewer does when a view needs again what was collapsed: nothing is decoded."
 
 
-def succeed(*command):
-    done = run(*command)
-    if done.returncode != 0:
-        sys.exit(f"{command[0]}: {done.stderr.strip()}")
-    return done.stdout
-
-
-def mesh_name(path):
-    return path.name.split(".")[0]
-
-
 def measure_ids(programs, packs, mesh, balances, files):
     """Encodes the mesh once for each balance; the pack of balance 1 is kept."""
     name = mesh_name(mesh)
     for balance in balances:
         pack = packs / f"{name}-{balance}.pack"
-        encoded = json.loads(succeed(programs / "meshfront-encode", mesh, "--output", pack, "--balance", balance, "--json"))
+        encoded = json.loads(encode(programs, mesh, pack, "--balance", balance, "--json"))
         info = json.loads(succeed(programs / "meshfront-pack", "info", pack, "--json"))
         ids, leaves = info["nodeIds"], info["leavesByDepth"]
         ideal = math.log2(max(1, info["metadata"]["vertexCount"] / info["base"]["roots"]))
@@ -117,12 +105,7 @@ def tell_speed(programs, packs_by_name, runs, files):
 
 
 def main():
-    arguments = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    arguments.add_argument("meshes", nargs="+", type=pathlib.Path, metavar="MESH")
-    arguments.add_argument("--output", type=pathlib.Path, required=True, metavar="DIR", help="a folder tables is written there")
-    arguments.add_argument("--bin", type=pathlib.Path, default=pathlib.Path("build/bin"))
-    arguments.add_argument("--short", action="store_true")
-    options = arguments.parse_args()
+    options = experiment_parser(__doc__, "tables").parse_args()
     files = ExperimentFiles(options.output / "tables")
     with tempfile.TemporaryDirectory() as folder:
         packs = {}

@@ -7,6 +7,7 @@ import re
 import sys
 import threading
 
+from encoded_meshes import mesh_name
 from links import link_to, port_of
 from served_programs import Server, run
 
@@ -45,7 +46,7 @@ class ReceiverDriven:
     def time(self, rtt, mbit):
         trace = self.packs / "trace.csv"
         with link_to(port_of(self.server.url), rtt, mbit) as port:
-            url = f"http://127.0.0.1:{port}/v1/meshes/{self.mesh.name.split('.')[0]}"
+            url = f"http://127.0.0.1:{port}/v1/meshes/{mesh_name(self.mesh)}"
             seen = view(self.programs, url, *self.options, "--reference", self.mesh, "--until", f"psnr:{TARGET}")
             timed = view(self.programs, url, *self.options, "--trace", trace)
         target = seen["psnr_target"]
@@ -126,16 +127,10 @@ def download(port, name):
     return float(done.stdout)
 
 
-class Pipe:
-    """Splits in one order for everybody are a file that is read from its beginning: timed are files of as
-    many octets as 35 dB and the whole mesh take. Decoding, which would take place meanwhile, is free."""
+class Files:
+    """A way that downloads files of a folder."""
 
-    label = "view-independent"
-
-    def __init__(self, folder, octets_to_target, octets):
-        self.octets_to_target = octets_to_target
-        (folder / "part.bin").write_bytes(bytes(octets_to_target))
-        (folder / "whole.bin").write_bytes(bytes(octets))
+    def __init__(self, folder):
         self.files = FileServer(folder)
 
     def __enter__(self):
@@ -145,17 +140,31 @@ class Pipe:
     def __exit__(self, *error):
         self.files.__exit__(*error)
 
+
+class Pipe(Files):
+    """Splits in one order for everybody are a file that is read from its beginning: timed are files of as
+    many octets as 35 dB and the whole mesh take. Decoding, which would take place meanwhile, is free."""
+
+    label = "view-independent"
+
+    def __init__(self, folder, octets_to_target, octets):
+        super().__init__(folder)
+        self.octets_to_target = octets_to_target
+        (folder / "part.bin").write_bytes(bytes(octets_to_target))
+        (folder / "whole.bin").write_bytes(bytes(octets))
+
     def time(self, rtt, mbit):
         with link_to(self.files.port, rtt, mbit) as port:
             return Timing(to_target=download(port, "part.bin"), settled=download(port, "whole.bin"), bytes=self.octets_to_target)
 
 
-class Draco:
+class Draco(Files):
     """The whole file at the same quantisation, then its decoding, which nothing is seen of before."""
 
     label = "Draco's file"
 
     def __init__(self, folder, plain_mesh, bits):
+        super().__init__(folder)
         file = folder / "mesh.drc"
         encoded = run("draco_encoder", "-i", plain_mesh, "-o", file, "-qp", bits, "-cl", 10)
         decoded = run("draco_decoder", "-i", file, "-o", folder / "decoded.ply")
@@ -164,14 +173,6 @@ class Draco:
             sys.exit(f"Draco: {encoded.stderr.strip()} {decoded.stdout.strip()}")
         self.decoding = int(told.group(1)) / 1e3
         self.octets = file.stat().st_size
-        self.files = FileServer(folder)
-
-    def __enter__(self):
-        self.files.__enter__()
-        return self
-
-    def __exit__(self, *error):
-        self.files.__exit__(*error)
 
     def time(self, rtt, mbit):
         with link_to(self.files.port, rtt, mbit) as port:

@@ -10,6 +10,9 @@ export ASAN_OPTIONS="${ASAN_OPTIONS:+$ASAN_OPTIONS:}detect_leaks=0"
 write_test_mesh "$work/mesh.obj"
 mkdir "$work/packs"
 "$bin/meshfront-encode" "$work/mesh.obj" --output "$work/packs/mesh.pack" --name mesh >/dev/null
+# The same with normals of its own, all upward.
+{ echo 'vn 0 1 0'; sed -E '/^f/s#([0-9]+)( |$)#\1//1\2#g' "$work/mesh.obj"; } >"$work/lit.obj"
+"$bin/meshfront-encode" "$work/lit.obj" --output "$work/packs/lit.pack" --name lit >/dev/null
 start_server service "$bin/meshfront-serve" --packs "$work/packs" --listen 127.0.0.1:0
 url=$origin/v1/meshes/mesh
 
@@ -179,6 +182,11 @@ awk -F, 'NR == 1 { if ($0 != "frame,time,bytes_down,bytes_up,splits,triangles,ps
   NR > 1 { if ($8 != "settled" || $7 < 30 || $3 < down) exit 2; down = $3; at[$1] = $3 }
   END { if (NR != 18) exit 3; if (at[16] != at[8]) exit 4 }' "$work/flight.csv" ||
   fail "the flight's log ($?): $(cat "$work/flight.csv")"
+# Its reference is shaded as it is.
+expect_status 0 "$bin/meshfront-view" "$origin/v1/meshes/lit" --headless --size 300x200 \
+  --path "$work/around.json" --path-pace settled --path-log "$work/lit.csv" \
+  --reference "$work/lit.obj"
+awk -F, 'NR > 1 && $7 < 30 { exit 1 }' "$work/lit.csv" || fail "lit otherwise: $(cat "$work/lit.csv")"
 # By the clock: as many frames, whatever has arrived.
 sed 's/"frames_per_second": 2/"frames_per_second": 20/; s/"time": 4/"time": 0.4/' \
   "$work/around.json" >"$work/quick.json"

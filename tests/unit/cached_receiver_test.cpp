@@ -111,9 +111,7 @@ TEST_P(CachedReceiverTest, AsksOnlyForWhatItNeverHad) {
   EXPECT_EQ(receiver.state(), ReceiverState::complete) << receiver.reason();
   EXPECT_GT(receiver.statistics().recordsFromDisk, 300U);
   EXPECT_EQ(receiver.statistics().records, service_.splitCount());
-  const GridMesh snapshot = receiver.mesh()->snapshot();
-  EXPECT_EQ(canonical(snapshot.positions, snapshot.triangles),
-            canonical(service_.mesh().positions, service_.mesh().triangles));
+  expectWholeMesh(receiver);
   // Everything is on the disk now.
   receiver_.reset();
   answered_.clear();

@@ -39,6 +39,22 @@ class ChangingFrontTest : public ReceiverTest {
   }
 };
 
+class ChangingFrontInAnyMode : public ChangingFrontTest,
+                               public ::testing::WithParamInterface<FetchMode> {
+ protected:
+  static ReceiverOptions interactive(uint32_t batch = 10, uint32_t window = 2) {
+    ReceiverOptions options = ChangingFrontTest::interactive(batch, window);
+    options.mode = GetParam();
+    return options;
+  }
+};
+
+INSTANTIATE_TEST_SUITE_P(BothModes, ChangingFrontInAnyMode,
+                         ::testing::Values(FetchMode::exact, FetchMode::chunks),
+                         [](const auto& info) {
+                           return info.param == FetchMode::exact ? "exact" : "chunks";
+                         });
+
 TEST_F(ChangingFrontTest, KeepsTheRecordOfANodeThatWasCollapsedMeanwhile) {
   Receiver& receiver = connect(interactive(200, 1));
   receiver.rank(everywhere(receiver));
@@ -79,66 +95,54 @@ TEST_F(ChangingFrontTest, KeepsTheRecordOfANodeThatWasCollapsedMeanwhile) {
   EXPECT_EQ(receiver.statistics().requests, 2U);
 }
 
-TEST_F(ChangingFrontTest, GoesOnWhateverIsCollapsedUnderIt) {
-  for (const FetchMode mode : {FetchMode::exact, FetchMode::chunks}) {
-    ReceiverOptions options = interactive(40, 3);
-    options.mode = mode;
-    Receiver& receiver = connect(options);
-    SelectivelyRefinedMesh& mesh = *receiver.meshToRefine();
-    uint32_t state = 1;
-    for (int i = 0; i < 3'000 && receiver.isAtWork(); ++i) {
-      state = state * 1'664'525 + 1'013'904'223;
-      if (!transport_.held.empty() && i % 2 == 0)
-        transport_.answer(service_, state % transport_.held.size());
-      receiver.advance(20);
-      if (i < 1'500 && i % 3 == 0)
-        for (NodeIndex node = state % 7; node < mesh.nodeCount(); node += 5)
-          if (mesh.hasRecord(node) && mesh.canCollapse(node)) mesh.collapse(node);
-      if (i < 1'500 && i % 17 == 0) {
-        std::vector<NodeId> forgotten;
-        for (NodeIndex node = state % 11; node < mesh.nodeCount(); node += 13)
-          if (mesh.isKnown(node) && mesh.isActive(node)) mesh.forgetBelow(node, &forgotten);
-        receiver.forgot(forgotten);
-      }
-      if (i % 2 == 0 || receiver.wantsRanking()) receiver.rank(everywhere(receiver, 1 + i % 4));
+TEST_P(ChangingFrontInAnyMode, GoesOnWhateverIsCollapsedUnderIt) {
+  Receiver& receiver = connect(interactive(40, 3));
+  SelectivelyRefinedMesh& mesh = *receiver.meshToRefine();
+  uint32_t state = 1;
+  for (int i = 0; i < 3'000 && receiver.isAtWork(); ++i) {
+    state = state * 1'664'525 + 1'013'904'223;
+    if (!transport_.held.empty() && i % 2 == 0)
+      transport_.answer(service_, state % transport_.held.size());
+    receiver.advance(20);
+    if (i < 1'500 && i % 3 == 0)
+      for (NodeIndex node = state % 7; node < mesh.nodeCount(); node += 5)
+        if (mesh.hasRecord(node) && mesh.canCollapse(node)) mesh.collapse(node);
+    if (i < 1'500 && i % 17 == 0) {
+      std::vector<NodeId> forgotten;
+      for (NodeIndex node = state % 11; node < mesh.nodeCount(); node += 13)
+        if (mesh.isKnown(node) && mesh.isActive(node)) mesh.forgetBelow(node, &forgotten);
+      receiver.forgot(forgotten);
     }
-    EXPECT_EQ(receiver.state(), ReceiverState::complete) << receiver.reason();
-    EXPECT_EQ(receiver.statistics().malformed, 0U);
-    EXPECT_GE(receiver.statistics().records, service_.splitCount());
-    const GridMesh snapshot = mesh.snapshot();
-    EXPECT_EQ(canonical(snapshot.positions, snapshot.triangles),
-              canonical(service_.mesh().positions, service_.mesh().triangles));
+    if (i % 2 == 0 || receiver.wantsRanking()) receiver.rank(everywhere(receiver, 1 + i % 4));
   }
+  EXPECT_EQ(receiver.state(), ReceiverState::complete) << receiver.reason();
+  EXPECT_EQ(receiver.statistics().malformed, 0U);
+  EXPECT_GE(receiver.statistics().records, service_.splitCount());
+  expectWholeMesh(receiver);
 }
 
-TEST_F(ChangingFrontTest, AsksAgainForWhatTheMeshHasForgotten) {
-  for (const FetchMode mode : {FetchMode::exact, FetchMode::chunks}) {
-    ReceiverOptions options = interactive(100, 2);
-    options.mode = mode;
-    Receiver& receiver = connect(options);
-    SelectivelyRefinedMesh& mesh = *receiver.meshToRefine();
-    runToTheEnd(receiver);
-    ASSERT_EQ(receiver.state(), ReceiverState::complete);
-    const uint64_t requests = receiver.statistics().requests;
-    // Back to the base, and nothing is kept but the roots' records.
-    for (NodeIndex node = static_cast<NodeIndex>(mesh.nodeCount()); node-- > 0;)
-      if (mesh.isKnown(node) && mesh.canCollapse(node)) mesh.collapse(node);
-    ASSERT_EQ(mesh.splitsApplied(), 0U);
-    std::vector<NodeId> forgotten;
-    for (NodeIndex root = 0; root < mesh.base().treeCount(); ++root)
-      mesh.forgetBelow(root, &forgotten);
-    ASSERT_GT(forgotten.size(), 1'000U);
-    receiver.forgot(forgotten);
-    receiver.rank(everywhere(receiver));
-    EXPECT_EQ(receiver.state(), ReceiverState::refining);
-    runToTheEnd(receiver);
-    EXPECT_EQ(receiver.state(), ReceiverState::complete) << receiver.reason();
-    EXPECT_GT(receiver.statistics().requests, requests);
-    EXPECT_EQ(receiver.statistics().malformed, 0U);
-    const GridMesh snapshot = mesh.snapshot();
-    EXPECT_EQ(canonical(snapshot.positions, snapshot.triangles),
-              canonical(service_.mesh().positions, service_.mesh().triangles));
-  }
+TEST_P(ChangingFrontInAnyMode, AsksAgainForWhatTheMeshHasForgotten) {
+  Receiver& receiver = connect(interactive(100, 2));
+  SelectivelyRefinedMesh& mesh = *receiver.meshToRefine();
+  runToTheEnd(receiver);
+  ASSERT_EQ(receiver.state(), ReceiverState::complete);
+  const uint64_t requests = receiver.statistics().requests;
+  // Back to the base, and nothing is kept but the roots' records.
+  for (NodeIndex node = static_cast<NodeIndex>(mesh.nodeCount()); node-- > 0;)
+    if (mesh.isKnown(node) && mesh.canCollapse(node)) mesh.collapse(node);
+  ASSERT_EQ(mesh.splitsApplied(), 0U);
+  std::vector<NodeId> forgotten;
+  for (NodeIndex root = 0; root < mesh.base().treeCount(); ++root)
+    mesh.forgetBelow(root, &forgotten);
+  ASSERT_GT(forgotten.size(), 1'000U);
+  receiver.forgot(forgotten);
+  receiver.rank(everywhere(receiver));
+  EXPECT_EQ(receiver.state(), ReceiverState::refining);
+  runToTheEnd(receiver);
+  EXPECT_EQ(receiver.state(), ReceiverState::complete) << receiver.reason();
+  EXPECT_GT(receiver.statistics().requests, requests);
+  EXPECT_EQ(receiver.statistics().malformed, 0U);
+  expectWholeMesh(receiver);
 }
 
 TEST_F(ChangingFrontTest, AsksAgainForAKeptRecordThatDoesNotApply) {
@@ -153,29 +157,24 @@ TEST_F(ChangingFrontTest, AsksAgainForAKeptRecordThatDoesNotApply) {
   EXPECT_EQ(receiver.statistics().malformed, 1U);
 }
 
-TEST_F(ChangingFrontTest, SplitsNoMoreThanItIsAllowed) {
-  for (const FetchMode mode : {FetchMode::exact, FetchMode::chunks}) {
-    ReceiverOptions options = interactive();
-    options.mode = mode;
-    Receiver& receiver = connect(options);
-    receiver.setSplitAllowance(25);
-    runToTheEnd(receiver);
-    EXPECT_EQ(receiver.state(), ReceiverState::limitReached);
-    EXPECT_TRUE(receiver.budgetReached());
-    EXPECT_EQ(receiver.mesh()->splitsApplied(), 25U);
-    EXPECT_TRUE(transport_.held.empty());
-    if (mode == FetchMode::exact) {
-      EXPECT_EQ(receiver.statistics().idsRequested, 25U);
-    }
-    receiver.rank(nothing(receiver));  // a view that needs nothing is not short of anything
-    EXPECT_EQ(receiver.state(), ReceiverState::settled);
-    receiver.setSplitAllowance(UINT64_MAX);
-    receiver.rank(everywhere(receiver));
-    EXPECT_EQ(receiver.state(), ReceiverState::refining);
-    runToTheEnd(receiver);
-    EXPECT_EQ(receiver.state(), ReceiverState::complete) << receiver.reason();
-    transport_.held.clear();
+TEST_P(ChangingFrontInAnyMode, SplitsNoMoreThanItIsAllowed) {
+  Receiver& receiver = connect(interactive());
+  receiver.setSplitAllowance(25);
+  runToTheEnd(receiver);
+  EXPECT_EQ(receiver.state(), ReceiverState::limitReached);
+  EXPECT_TRUE(receiver.budgetReached());
+  EXPECT_EQ(receiver.mesh()->splitsApplied(), 25U);
+  EXPECT_TRUE(transport_.held.empty());
+  if (GetParam() == FetchMode::exact) {
+    EXPECT_EQ(receiver.statistics().idsRequested, 25U);
   }
+  receiver.rank(nothing(receiver));  // a view that needs nothing is not short of anything
+  EXPECT_EQ(receiver.state(), ReceiverState::settled);
+  receiver.setSplitAllowance(UINT64_MAX);
+  receiver.rank(everywhere(receiver));
+  EXPECT_EQ(receiver.state(), ReceiverState::refining);
+  runToTheEnd(receiver);
+  EXPECT_EQ(receiver.state(), ReceiverState::complete) << receiver.reason();
 }
 
 TEST_F(ChangingFrontTest, KeepsWhatArrivesBeyondTheAllowance) {

@@ -68,9 +68,7 @@ class ChunkReceiverTest : public ReceiverTest {
   void expectTheExactMesh(const Receiver& receiver) const {
     ASSERT_EQ(receiver.state(), ReceiverState::complete) << receiver.reason();
     EXPECT_EQ(receiver.statistics().records, service_.splitCount());
-    const GridMesh snapshot = receiver.mesh()->snapshot();
-    EXPECT_EQ(canonical(snapshot.positions, snapshot.triangles),
-              canonical(service_.mesh().positions, service_.mesh().triangles));
+    expectWholeMesh(receiver);
   }
 
   std::vector<std::string> asked_;

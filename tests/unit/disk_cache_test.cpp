@@ -78,6 +78,15 @@ class DiskCacheTest : public ::testing::Test {
       if (entry.is_regular_file()) bytes += entry.file_size();
     return bytes;
   }
+  // Of three blocks, 20 records each.
+  fs::path segmentOfBlocks() {
+    const auto cache = open();
+    for (uint32_t n = 0; n < 60; n += 20) {
+      keepRange(*cache, n, n + 20);
+      cache->flush();
+    }
+    return segments().at(0);
+  }
   static std::vector<uint8_t> contentOf(const fs::path& path) {
     std::ifstream in(path, std::ios::binary);
     return {std::istreambuf_iterator<char>(in), {}};
@@ -135,14 +144,7 @@ TEST_F(DiskCacheTest, KeepsDocumentsAsAWhole) {
 }
 
 TEST_F(DiskCacheTest, ReadsWhatIsSoundOfASegmentCutAnywhere) {
-  {
-    const auto cache = open();
-    for (uint32_t n = 0; n < 60; n += 20) {
-      keepRange(*cache, n, n + 20);
-      cache->flush();
-    }
-  }
-  const fs::path path = segments().at(0);
+  const fs::path path = segmentOfBlocks();
   const std::vector<uint8_t> whole = contentOf(path);
   uint32_t before = 0;
   for (size_t length = 0; length <= whole.size(); ++length) {
@@ -156,14 +158,7 @@ TEST_F(DiskCacheTest, ReadsWhatIsSoundOfASegmentCutAnywhere) {
 }
 
 TEST_F(DiskCacheTest, LeavesOutWhatIsDamagedAndNothingElse) {
-  {
-    const auto cache = open();
-    for (uint32_t n = 0; n < 60; n += 20) {
-      keepRange(*cache, n, n + 20);
-      cache->flush();
-    }
-  }
-  const fs::path path = segments().at(0);
+  const fs::path path = segmentOfBlocks();
   const std::vector<uint8_t> whole = contentOf(path);
   for (size_t at = 0; at < whole.size(); ++at) {
     std::vector<uint8_t> damaged = whole;

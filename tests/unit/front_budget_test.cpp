@@ -287,12 +287,12 @@ TEST(FrontBudget, ObeysALowerLimit) {
   const Camera camera = scene.cameraAt(kClose);
   scene.framesToSettle(camera, 1, 60);
   const uint64_t before = scene.budget.triangles();
-  BudgetedScene other({sphere(5)}, {});
-  std::vector<uint32_t> none(scene.meshes[0].vertexSlotCount(), 1);
-  scene.budget.setLimits({.triangles = before / 2});
+  const std::vector<uint32_t> everywhere(scene.meshes[0].vertexSlotCount(), 1);
+  scene.budget = FrontBudget({.triangles = before / 2});
   for (unsigned i = 0; i < 40; ++i) {
     scene.budget.look(
-        std::array{MeshInView{scene.meshes.data(), none, scene.meshes[0].changeCount()}}, 1, 0);
+        std::array{MeshInView{scene.meshes.data(), everywhere, scene.meshes[0].changeCount()}}, 1,
+        0);
     while (scene.budget.work(100).more) {
     }
   }
@@ -330,7 +330,7 @@ TEST(FrontBudget, PinnedAndUncountedVerticesStay) {
   SelectivelyRefinedMesh& mesh = scene.meshes[0];
   const std::vector<uint32_t> nothing(mesh.vertexSlotCount(), 0);
   const uint64_t applied = mesh.splitsApplied();
-  scene.budget.setLimits({.unneededShare = 0});
+  scene.budget = FrontBudget({.unneededShare = 0});
   const auto lookAt = [&](uint64_t countedAt, uint64_t view) {
     scene.budget.look(std::array{MeshInView{&mesh, nothing, countedAt}}, view, 0);
     while (scene.budget.work(10).more) {

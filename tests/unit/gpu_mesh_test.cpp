@@ -1,5 +1,4 @@
 // Meshes in GPU buffers, changed bit by bit: the same bytes and the same picture as in one piece.
-// These tests need an OpenGL 4.5 driver, as those of pixel counting do.
 #include "viewer/gl/gpu_mesh.h"
 
 #include <epoxy/gl.h>
@@ -7,13 +6,11 @@
 
 #include <algorithm>
 #include <numeric>
-#include <optional>
 #include <random>
 
 #include "shared/camera/camera_spec.h"
+#include "tests/unit/drawing_fixture.h"
 #include "tests/unit/generated_shapes.h"
-#include "viewer/gl/gl_context.h"
-#include "viewer/gl/mesh_renderer.h"
 
 namespace meshfront {
 namespace {
@@ -112,24 +109,18 @@ std::vector<std::vector<uint8_t>> gpuContentsOf(const GpuMesh& mesh) {
           bufferBytes(mesh.cornerBuffer(), mesh.triangleCount() * sizeof(Triangle))};
 }
 
-class GpuMeshUpdates : public ::testing::TestWithParam<UpdateUpload::Way> {
+class GpuMeshUpdates : public GlTest, public ::testing::WithParamInterface<UpdateUpload::Way> {
  protected:
-  void SetUp() override {
-    auto context = GlContext::createHeadless();
-    ASSERT_TRUE(context) << context.error().message;
-    context_.emplace(std::move(*context));
-  }
-  void TearDown() override {
-    if (context_) {
-      EXPECT_EQ(takeGlErrors(), "");
-    }
-    context_.reset();
-  }
   [[nodiscard]] static GpuMesh meshFor(const ChangingMesh& changing) {
     return GpuMesh(changing.quantization(), true, GetParam());
   }
-
-  std::optional<GlContext> context_;
+  // What came bit by bit is what comes in one piece.
+  static void expectWhole(const GpuMesh& mesh, const ChangingMesh& changing) {
+    GpuMesh fresh = meshFor(changing);
+    ASSERT_TRUE(fresh.apply(changing.whole()));
+    EXPECT_EQ(gpuContentsOf(mesh), gpuContentsOf(fresh));
+    EXPECT_EQ(mesh.changeCount(), fresh.changeCount());
+  }
 };
 
 INSTANTIATE_TEST_SUITE_P(BothWays, GpuMeshUpdates,
@@ -203,9 +194,7 @@ TEST_P(GpuMeshUpdates, AReservedMeshNeverGrows) {
   ASSERT_TRUE(mesh.apply(changing.grownTo(300, 0)));
   ASSERT_TRUE(mesh.apply(changing.grownTo(changing.vertexCount(), 0)));
   EXPECT_EQ(mesh.positionBuffer(), before);
-  GpuMesh fresh = meshFor(changing);
-  ASSERT_TRUE(fresh.apply(changing.whole()));
-  EXPECT_EQ(gpuContentsOf(mesh), gpuContentsOf(fresh));
+  expectWhole(mesh, changing);
 }
 
 TEST_P(GpuMeshUpdates, SlicesShowTheMeshBeforeUntilAllIsThere) {
@@ -230,9 +219,7 @@ TEST_P(GpuMeshUpdates, SlicesShowTheMeshBeforeUntilAllIsThere) {
     EXPECT_LE(calls, update.byteCount() / kSlice + 2);
   }
   EXPECT_FALSE(mesh.isPending());
-  GpuMesh fresh = meshFor(changing);
-  ASSERT_TRUE(fresh.apply(changing.whole()));
-  EXPECT_EQ(gpuContentsOf(mesh), gpuContentsOf(fresh));
+  expectWhole(mesh, changing);
 }
 
 TEST_P(GpuMeshUpdates, UpdatesQueueUpBehindALargeOne) {
@@ -246,10 +233,7 @@ TEST_P(GpuMeshUpdates, UpdatesQueueUpBehindALargeOne) {
     ASSERT_TRUE(mesh.advance(0, 5'000));
     ++calls;
   }
-  GpuMesh fresh = meshFor(changing);
-  ASSERT_TRUE(fresh.apply(changing.whole()));
-  EXPECT_EQ(gpuContentsOf(mesh), gpuContentsOf(fresh));
-  EXPECT_EQ(mesh.changeCount(), fresh.changeCount());
+  expectWhole(mesh, changing);
 }
 
 TEST_P(GpuMeshUpdates, WhatIsOutOfRangeIsRefusedAndChangesNothing) {

@@ -24,7 +24,7 @@ TEST(PanelStatus, JsonHasEveryNumber) {
   status.triangleBudget = {7, 9};
   status.splitsPerSecond = 1e6;
   status.quality = {{0, 0.25}, {1, 0.75}};
-  status.meshes = {{"bunny", "settled", 1, 2, 0.5, ""}};
+  status.meshes = {{"bunny", "settled", 1, 2, ""}};
   status.legend = {"level", {{{1, 0, 0}, "0"}, {{0, 0, 1}, "9"}}, true};
   status.frame = FrameTimes{0.01, 0.02, 30};
   status.picks = {{{1, 2, 3}, 4, "bunny", "17:0110", 0.5}};
@@ -39,7 +39,7 @@ TEST(PanelStatus, JsonHasEveryNumber) {
   EXPECT_TRUE(json["round_trip"].is_null());
   EXPECT_EQ(json["quality"], 0.75);
   EXPECT_EQ(json["quality_series"].size(), 2U);
-  EXPECT_EQ(json["meshes"][0]["quality"], 0.5);
+  EXPECT_EQ(json["meshes"][0]["state"], "settled");
   EXPECT_EQ(json["legend"]["entries"][1]["text"], "9");
   EXPECT_EQ(json["frame_95"], 0.02);
   EXPECT_EQ(json["picks"][0]["node"], "17:0110");

@@ -1,17 +1,14 @@
-// Drawing without a display. These tests need an OpenGL 4.5 driver (Mesa's llvmpipe will do): where
-// there is none they fail and say what to install.
+// Drawing one mesh, and the pixels that its vertices cover: on the GPU, read back, and by hand.
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <limits>
 #include <numeric>
-#include <optional>
 #include <random>
 
 #include "shared/camera/camera_spec.h"
+#include "tests/unit/drawing_fixture.h"
 #include "tests/unit/generated_shapes.h"
-#include "viewer/gl/gl_context.h"
-#include "viewer/gl/mesh_renderer.h"
 #include "viewer/gl/pixel_counter.h"
 
 namespace meshfront {
@@ -41,32 +38,12 @@ Camera wholeCamera(const Bounds& bounds) {
   return placeCamera(CameraSpec{}, bounds, 1);
 }
 
-// Sees the square (0,0)-(1,1) of planeShape() exactly fill a square picture.
-Camera planeCamera() {
-  return {{0.5, 0.5, 1}, {0.5, 0.5, 0}, {0, 1, 0}, 2 * std::atan(0.5)};
-}
-
-class PixelCounting : public ::testing::Test {
+class PixelCounting : public DrawingTest {
  protected:
-  void SetUp() override {
-    auto context = GlContext::createHeadless();
-    ASSERT_TRUE(context) << context.error().message;
-    context_.emplace(std::move(*context));
-    auto renderer = MeshRenderer::create();
-    ASSERT_TRUE(renderer) << renderer.error().message;
-    renderer_.emplace(std::move(*renderer));
-  }
-  void TearDown() override {
-    if (context_) {
-      EXPECT_EQ(takeGlErrors(), "");
-    }
-    renderer_.reset();
-    context_.reset();
-  }
-  static RenderTarget target(PixelSize size) {
-    auto made = RenderTarget::create(size);
-    EXPECT_TRUE(made) << made.error().message;
-    return std::move(*made);
+  PixelCounting() : DrawingTest({64, 64}) {}
+  RenderTarget& target(PixelSize size) {
+    EXPECT_TRUE(target_->resize(size));
+    return *target_;
   }
   std::vector<uint32_t> counts(const RenderTarget& target, const GpuMesh& mesh,
                                PixelCounter::Method method) {
@@ -76,9 +53,6 @@ class PixelCounting : public ::testing::Test {
     counter.count(target, mesh, counted);
     return counted;
   }
-
-  std::optional<GlContext> context_;
-  std::optional<MeshRenderer> renderer_;
 };
 
 TEST_F(PixelCounting, SaysWhatDraws) {
@@ -96,7 +70,7 @@ TEST_F(PixelCounting, DrawsTheMeshsOwnColoursUnlessToldNotTo) {
   GpuMesh mesh;
   ASSERT_TRUE(mesh.update(arrays).value());
   EXPECT_TRUE(mesh.hasColours());
-  auto drawn = target({16, 16});
+  RenderTarget& drawn = target({16, 16});
   const auto middle = [&](const DrawStyle& style) {
     renderer_->draw(drawn, mesh, planeCamera(), boundsOf(shape), style);
     const Picture picture = drawn.readPicture();
@@ -125,7 +99,7 @@ TEST_F(PixelCounting, SquareThatFillsThePictureCountsEveryPixel) {
   const GridShape shape = planeShape(1);
   GpuMesh mesh;
   ASSERT_TRUE(mesh.update(arraysOf(shape)).value());
-  auto picture = target({64, 64});
+  RenderTarget& picture = target({64, 64});
   renderer_->drawItems(picture, mesh, planeCamera(), boundsOf(shape));
   for (const auto method : {PixelCounter::Method::compute, PixelCounter::Method::readBack}) {
     const auto counted = counts(picture, mesh, method);
@@ -142,7 +116,7 @@ TEST_F(PixelCounting, ItemsNameTheTrianglesByFaceSlot) {
   const GridShape shape = planeShape(4);  // squares of 16 pixels
   GpuMesh mesh;
   ASSERT_TRUE(mesh.update(arraysOf(shape)).value());
-  auto picture = target({64, 64});
+  RenderTarget& picture = target({64, 64});
   renderer_->draw(picture, mesh, planeCamera(), boundsOf(shape), {});
   std::vector<uint32_t> items;
   picture.readItems(items);
@@ -160,7 +134,7 @@ TEST_F(PixelCounting, DrawAndDrawItemsMakeTheSameItems) {
   GpuMesh mesh;
   ASSERT_TRUE(mesh.update(arraysOf(shape)).value());
   const Bounds bounds = boundsOf(shape);
-  auto picture = target({200, 150});
+  RenderTarget& picture = target({200, 150});
   std::vector<uint32_t> drawn;
   std::vector<uint32_t> only;
   renderer_->draw(picture, mesh, wholeCamera(bounds), bounds, {});
@@ -181,7 +155,7 @@ TEST_F(PixelCounting, UndrawnTrianglesDrawNothingAndKeepTheSlots) {
   }
   GpuMesh mesh;
   ASSERT_TRUE(mesh.update(arraysOf(shape, 1)).value());
-  auto picture = target({64, 64});
+  RenderTarget& picture = target({64, 64});
   std::vector<uint32_t> items;
   renderer_->draw(picture, mesh, planeCamera(), boundsOf(shape), {});
   picture.readItems(items);
@@ -200,7 +174,7 @@ TEST_F(PixelCounting, UndrawnTrianglesDrawNothingAndKeepTheSlots) {
 
 TEST_F(PixelCounting, EmptyMeshDrawsAndCountsNothing) {
   GpuMesh mesh;
-  auto picture = target({16, 16});
+  RenderTarget& picture = target({16, 16});
   renderer_->draw(picture, mesh, planeCamera(), Bounds{}, {});
   EXPECT_TRUE(counts(picture, mesh, PixelCounter::Method::compute).empty());
   EXPECT_TRUE(counts(picture, mesh, PixelCounter::Method::readBack).empty());
@@ -212,7 +186,7 @@ TEST_F(PixelCounting, ComputeAndReadBackAgreeExactly) {
   std::vector<GridShape> shapes = {sphereShape(1), sphereShape(3, 0.3), sphereShape(6, 0.1)};
   const GridShape far = sphereShape(5, 0.2, {4.1e6, 5.3e6, 120}, 850);
   shapes.push_back(far);
-  auto picture = target({1, 1});
+  RenderTarget& picture = target({1, 1});
   for (const GridShape& shape : shapes) {
     GpuMesh mesh;
     ASSERT_TRUE(mesh.update(arraysOf(shape)).value());
@@ -243,7 +217,7 @@ TEST_F(PixelCounting, HiddenVerticesCountNothing) {
   ASSERT_TRUE(mesh.update(arraysOf(shape)).value());
   const Bounds bounds = boundsOf(shape);
   const Camera camera = placeCamera(*parseCameraSpec("azimuth=0;elevation=0"), bounds, 1);
-  auto picture = target({256, 256});
+  RenderTarget& picture = target({256, 256});
   renderer_->drawItems(picture, mesh, camera, bounds);
   const auto counted = counts(picture, mesh, PixelCounter::Method::compute);
   for (size_t v = 0; v < counted.size(); ++v) {
@@ -284,7 +258,7 @@ TEST_F(PixelCounting, ResizeChangesTheCounts) {
   const GridShape shape = planeShape(1);
   GpuMesh mesh;
   ASSERT_TRUE(mesh.update(arraysOf(shape)).value());
-  auto picture = target({64, 64});
+  RenderTarget& picture = target({64, 64});
   for (const int side : {64, 200, 31}) {
     ASSERT_TRUE(picture.resize({side, side}));
     renderer_->drawItems(picture, mesh, planeCamera(), boundsOf(shape));
@@ -303,7 +277,7 @@ TEST_F(PixelCounting, TriangleOrderDoesNotChangeThePicture) {
   const Bounds bounds = boundsOf(shape);
   GpuMesh mesh;
   ASSERT_TRUE(mesh.update(arraysOf(shape, 1)).value());
-  auto picture = target({300, 300});
+  RenderTarget& picture = target({300, 300});
   renderer_->draw(picture, mesh, wholeCamera(bounds), bounds, {});
   const Picture inOrder = picture.readPicture();
   std::shuffle(shape.triangles.begin(), shape.triangles.end(), std::mt19937(1));
@@ -319,7 +293,7 @@ TEST_F(PixelCounting, StylesDifferAndBothSidesAreLit) {
   const Camera camera = wholeCamera(bounds);
   GpuMesh mesh;
   ASSERT_TRUE(mesh.update(arraysOf(shape, 1)).value());
-  auto picture = target({200, 200});
+  RenderTarget& picture = target({200, 200});
   renderer_->draw(picture, mesh, camera, bounds, {});
   const Picture smooth = picture.readPicture();
   renderer_->draw(picture, mesh, camera, bounds, {.flatShading = true});

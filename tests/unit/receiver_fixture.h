@@ -82,6 +82,12 @@ class ReceiverTest : public ::testing::Test {
     }
   }
 
+  void expectWholeMesh(const Receiver& receiver) const {
+    const GridMesh whole = receiver.mesh()->snapshot();
+    EXPECT_EQ(canonical(whole.positions, whole.triangles),
+              canonical(service_.mesh().positions, service_.mesh().triangles));
+  }
+
   MeshService service_ = torusService();
   ScriptedTransport transport_;
   std::optional<Receiver> receiver_;

@@ -114,9 +114,7 @@ TEST_F(ReceiverTest, GetsTheExactMeshWhenEverythingIsVisible) {
   runToTheEnd(receiver);
   EXPECT_EQ(receiver.state(), ReceiverState::complete) << receiver.reason();
   EXPECT_EQ(receiver.statistics().records, service_.splitCount());
-  const auto snapshot = receiver.mesh()->snapshot();
-  EXPECT_EQ(canonical(snapshot.positions, snapshot.triangles),
-            canonical(service_.mesh().positions, service_.mesh().triangles));
+  expectWholeMesh(receiver);
 }
 
 TEST_F(ReceiverTest, CompletesWhatNoViewShows) {

@@ -6,13 +6,11 @@
 #include <chrono>
 #include <glm/gtc/matrix_transform.hpp>
 #include <numeric>
-#include <optional>
 #include <thread>
 
 #include "shared/camera/camera_spec.h"
+#include "tests/unit/drawing_fixture.h"
 #include "tests/unit/generated_shapes.h"
-#include "viewer/gl/gl_context.h"
-#include "viewer/gl/mesh_renderer.h"
 #include "viewer/gl/pixel_counter.h"
 
 namespace meshfront {
@@ -22,27 +20,9 @@ using testing::GridShape;
 using testing::sphereShape;
 using InstanceCounts = std::vector<std::vector<uint32_t>>;
 
-class DrawingScenes : public ::testing::Test {
+class DrawingScenes : public DrawingTest {
  protected:
-  void SetUp() override {
-    auto context = GlContext::createHeadless();
-    ASSERT_TRUE(context) << context.error().message;
-    context_.emplace(std::move(*context));
-    auto renderer = MeshRenderer::create();
-    ASSERT_TRUE(renderer) << renderer.error().message;
-    renderer_.emplace(std::move(*renderer));
-    auto target = RenderTarget::create({320, 200});
-    ASSERT_TRUE(target) << target.error().message;
-    target_.emplace(std::move(*target));
-  }
-  void TearDown() override {
-    if (context_) {
-      EXPECT_EQ(takeGlErrors(), "");
-    }
-    target_.reset();
-    renderer_.reset();
-    context_.reset();
-  }
+  DrawingScenes() : DrawingTest({320, 200}) {}
   static GpuMesh uploaded(const GridShape& shape) {
     GpuMesh mesh;
     EXPECT_TRUE(mesh.update({shape.quantization, shape.positions, shape.triangles, 1}));
@@ -55,10 +35,6 @@ class DrawingScenes : public ::testing::Test {
     target_->readItems(drawn);
     return drawn;
   }
-
-  std::optional<GlContext> context_;
-  std::optional<MeshRenderer> renderer_;
-  std::optional<RenderTarget> target_;
 };
 
 uint64_t coveredPixels(const std::vector<uint32_t>& items) {

@@ -128,11 +128,7 @@ TEST_F(SceneTest, AllMeshesBecomeComplete) {
   EXPECT_EQ(status.state, ReceiverState::complete);
   EXPECT_EQ(status.splits, 3 * service_.splitCount());
   EXPECT_EQ(status.meshes.size(), 3U);
-  for (size_t i = 0; i < 3; ++i) {
-    const GridMesh whole = scene.receiver(i).mesh()->snapshot();
-    EXPECT_EQ(canonical(whole.positions, whole.triangles),
-              canonical(service_.mesh().positions, service_.mesh().triangles));
-  }
+  for (size_t i = 0; i < 3; ++i) expectWholeMesh(scene.receiver(i));
 }
 
 TEST_F(SceneTest, WhatLooksLargerComesFirst) {
@@ -293,7 +289,6 @@ TEST_F(SceneTest, AThreadTakesUpAgainWhenTheServerIsBack) {
   EXPECT_NE(lost.reason.find("refused"), std::string::npos);
   ASSERT_TRUE(lost.secondsToResume || thread.status().secondsToResume);
   transport.setAway(false);
-  thread.resumeNow();
   onlooker.lookUntil(ReceiverState::complete);
 }
 

@@ -78,25 +78,29 @@ TEST(ViewPrediction, GoesOnAroundTheTarget) {
   EXPECT_NEAR(glm::distance(prediction.ahead(1e6)->eye, ahead->target), 4, 1e-9);
 }
 
-TEST(ViewPrediction, GoesOnNearer) {
-  ViewPrediction prediction;
+Camera cameraAtHeight(double z) {
   Camera camera;
-  camera.eye = {0, 0, 8};
-  prediction.see(0, camera);
-  camera.eye = {0, 0, 4};
-  prediction.see(0.25, camera);
+  camera.eye = {0, 0, z};
+  return camera;
+}
+
+// Half way to the target in a quarter of a second.
+ViewPrediction comingNearer() {
+  ViewPrediction prediction;
+  prediction.see(0, cameraAtHeight(8));
+  prediction.see(0.25, cameraAtHeight(4));
+  return prediction;
+}
+
+TEST(ViewPrediction, GoesOnNearer) {
+  const ViewPrediction prediction = comingNearer();
   EXPECT_NEAR(prediction.ahead(0.125)->eye.z, 4 / std::sqrt(2.0), 1e-9);
   EXPECT_NEAR(prediction.ahead(10)->eye.z, 4 / ViewPrediction::kLargestScale, 1e-9);
 }
 
 TEST(ViewPrediction, SaysNothingOfACameraThatStands) {
-  ViewPrediction prediction;
-  Camera camera;
-  camera.eye = {0, 0, 8};
-  prediction.see(0, camera);
-  camera.eye = {0, 0, 4};
-  prediction.see(0.25, camera);
-  for (int frame = 0; frame < 10; ++frame) prediction.see(0.3 + 0.1 * frame, camera);
+  ViewPrediction prediction = comingNearer();
+  for (int frame = 0; frame < 10; ++frame) prediction.see(0.3 + 0.1 * frame, cameraAtHeight(4));
   EXPECT_FALSE(prediction.ahead(0.5));
 }
 

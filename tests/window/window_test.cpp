@@ -96,8 +96,8 @@ struct DrawnShape {
     status.roundTrip = 0.032;
     status.rankingTime = 0.0042;
     status.quality = {{0, 0.1}, {1, 0.5}, {2, 0.6}, {3, 0.97}};
-    status.meshes = {{"bunny", "settled", 1000, 69'451, 1.0, ""},
-                     {"igea", "degraded", 2000, 268'686, 0.4, "no answer"}};
+    status.meshes = {{"bunny", "settled", 1000, 69'451, ""},
+                     {"igea", "degraded", 2000, 268'686, "no answer"}};
     status.legend = {
         "level",
         {{{0.2F, 0.1F, 0.5F}, "0"}, {{0.1F, 0.6F, 0.6F}, ""}, {{0.95F, 0.9F, 0.2F}, "17"}},

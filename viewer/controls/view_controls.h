@@ -57,8 +57,6 @@ class ViewControls {
   [[nodiscard]] const ViewSwitches& switches() const { return switches_; }
   [[nodiscard]] ViewSwitches& switches() { return switches_; }
   [[nodiscard]] bool quitAsked() const { return quitAsked_; }
-  [[nodiscard]] glm::dvec2 pointer() const { return pointer_; }
-  [[nodiscard]] bool dragging() const { return drag_ != Drag::none; }
 
   void setCamera(const Camera& camera);
   // What reset() goes back to and fit() shows, when that becomes known or changes.

@@ -23,9 +23,7 @@ Result<bool> RankingPass::start(const MeshRenderer& renderer,
     return tl::unexpected(resized.error());
   FrameState frame = view.frame;
   frame.aspect = view.size.aspect();
-  itemTimer_.begin();
   renderer.drawItems(target_, instances, view.camera, view.bounds, view.style, frame);
-  itemTimer_.end();
   return counter_.start(target_, instances, tag,
                         static_cast<uint32_t>(view.divisor * view.divisor));
 }

@@ -4,7 +4,6 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 #include <span>
 
 #include "shared/camera/bounds.h"
@@ -12,7 +11,6 @@
 #include "shared/result.h"
 #include "viewer/gl/mesh_instance.h"
 #include "viewer/gl/mesh_renderer.h"
-#include "viewer/gl/pass_timer.h"
 #include "viewer/gl/pixel_counter.h"
 #include "viewer/gl/render_target.h"
 
@@ -42,9 +40,6 @@ class RankingPass {
 
   [[nodiscard]] const PixelCounter& counter() const { return counter_; }
   [[nodiscard]] const RenderTarget& target() const { return target_; }
-  // Of the last passes whose times are known.
-  [[nodiscard]] std::optional<double> itemMilliseconds() { return itemTimer_.milliseconds(); }
-  [[nodiscard]] std::optional<double> countMilliseconds() { return counter_.milliseconds(); }
 
  private:
   RankingPass(RenderTarget target, PixelCounter counter)
@@ -52,7 +47,6 @@ class RankingPass {
 
   RenderTarget target_;
   PixelCounter counter_;
-  PassTimer itemTimer_;
 };
 
 }  // namespace meshfront

@@ -1,11 +1,9 @@
 #include "viewer/script/script_player.h"
 
-#include <sys/wait.h>
-
 #include <algorithm>
 #include <cmath>
-#include <csignal>
 #include <cstdio>
+#include <cstdlib>
 #include <fstream>
 #include <utility>
 

@@ -4,8 +4,10 @@
 #include <GLFW/glfw3.h>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <optional>
+#include <utility>
 
 namespace meshfront {
 namespace {
@@ -56,32 +58,17 @@ std::optional<PointerButton> buttonOf(int button) {
   }
 }
 
+constexpr std::array kNamedCodes{
+    std::pair(GLFW_KEY_LEFT, Key::left), std::pair(GLFW_KEY_RIGHT, Key::right),
+    std::pair(GLFW_KEY_UP, Key::up),     std::pair(GLFW_KEY_DOWN, Key::down),
+    std::pair(GLFW_KEY_HOME, Key::home), std::pair(GLFW_KEY_ESCAPE, Key::escape),
+    std::pair(GLFW_KEY_TAB, Key::tab),   std::pair(GLFW_KEY_DELETE, Key::deleteKey),
+    std::pair(GLFW_KEY_F1, Key::f1),     std::pair(GLFW_KEY_F12, Key::f12)};
+
 // Letters as they are printed on this keyboard; + - ? [ ] come as characters instead.
 Key keyOf(int key, int scancode) {
-  switch (key) {
-    case GLFW_KEY_LEFT:
-      return Key::left;
-    case GLFW_KEY_RIGHT:
-      return Key::right;
-    case GLFW_KEY_UP:
-      return Key::up;
-    case GLFW_KEY_DOWN:
-      return Key::down;
-    case GLFW_KEY_HOME:
-      return Key::home;
-    case GLFW_KEY_ESCAPE:
-      return Key::escape;
-    case GLFW_KEY_TAB:
-      return Key::tab;
-    case GLFW_KEY_DELETE:
-      return Key::deleteKey;
-    case GLFW_KEY_F1:
-      return Key::f1;
-    case GLFW_KEY_F12:
-      return Key::f12;
-    default:
-      break;
-  }
+  for (const auto& [code, named] : kNamedCodes)
+    if (code == key) return named;
   const char* printed = glfwGetKeyName(key, scancode);
   const char letter = printed != nullptr && printed[1] == '\0' ? printed[0] : '\0';
   if (letter >= 'a' && letter <= 'z') return letterKey(static_cast<char>(letter - 'a' + 'A'));

@@ -16,6 +16,12 @@ constexpr double kHeadingUnits = 19;
 // fonts-dejavu-core; without it ImGui's own bitmap font serves, larger where the scale asks for it.
 constexpr const char* kTextFont = "/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf";
 
+// ImGui's buttons: left, right, middle.
+size_t buttonPlace(PointerButton button) {
+  constexpr std::array<size_t, 3> kPlaces = {0, 2, 1};
+  return kPlaces.at(static_cast<size_t>(button));
+}
+
 ImVec4 grey(float value, float alpha) {
   return {value, value * 1.02F, value * 1.05F, alpha};
 }
@@ -90,14 +96,10 @@ void Gui::take(const InputEvent& event) {
   if (const auto* moved = std::get_if<PointerMoved>(&event)) {
     io.MousePos = ImVec2(static_cast<float>(moved->place.x), static_cast<float>(moved->place.y));
   } else if (const auto* pressed = std::get_if<PointerPressed>(&event)) {
-    // ImGui's buttons: left, right, middle.
-    constexpr std::array<size_t, 3> kPlaces = {0, 2, 1};
-    const size_t place = kPlaces.at(static_cast<size_t>(pressed->button));
-    down_.at(place) = true;
-    pressed_.at(place) = true;
+    down_.at(buttonPlace(pressed->button)) = true;
+    pressed_.at(buttonPlace(pressed->button)) = true;
   } else if (const auto* released = std::get_if<PointerReleased>(&event)) {
-    constexpr std::array<size_t, 3> kPlaces = {0, 2, 1};
-    down_.at(kPlaces.at(static_cast<size_t>(released->button))) = false;
+    down_.at(buttonPlace(released->button)) = false;
   } else if (const auto* scrolled = std::get_if<Scrolled>(&event)) {
     io.MouseWheel += static_cast<float>(scrolled->steps.y);
     io.MouseWheelH += static_cast<float>(scrolled->steps.x);

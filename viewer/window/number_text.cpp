@@ -30,7 +30,7 @@ std::string byteText(uint64_t octets) {
   if (octets < 1000) return std::to_string(octets) + kUnits[0];
   auto value = static_cast<double>(octets);
   size_t unit = 0;
-  // From 999.95 on one decimal would show 1000.0.
+  // From 999.5 on it would be shown as 1000.
   while (value >= 999.5 && unit + 1 < kUnits.size()) {
     value /= 1000;
     ++unit;

@@ -9,8 +9,7 @@ namespace meshfront {
 
 // The list of controls on a darkened picture; a click outside closes it (returns false then).
 [[nodiscard]] bool drawHelp(PixelSize picture);
-// In the middle where there is no picture yet, else across its top. `progress`: it is work, no
-// trouble.
+// In the middle where there is no picture yet, else in its upper right corner.
 void drawMessage(const WindowMessage& message, PixelSize picture, bool inTheMiddle);
 // Marks on the surface, and the bar of numbers at the bottom.
 void drawPicks(const PanelStatus& status, const Projection& projection, PixelSize picture);

@@ -23,7 +23,6 @@ Json meshesJson(const std::vector<MeshStatus>& meshes) {
                     {"state", mesh.state},
                     {"triangles_shown", mesh.trianglesShown},
                     {"triangles_of_mesh", mesh.trianglesOfMesh},
-                    {"quality", orNull(mesh.quality)},
                     {"reason", mesh.reason}});
   }
   return list;

@@ -40,8 +40,7 @@ struct MeshStatus {
   std::string state;
   uint64_t trianglesShown = 0;
   uint64_t trianglesOfMesh = 0;
-  std::optional<double> quality;  // as QualitySample::share, now
-  std::string reason;             // of degraded
+  std::string reason;  // of degraded
   bool operator==(const MeshStatus&) const = default;
 };
 

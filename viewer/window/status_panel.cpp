@@ -123,7 +123,7 @@ void drawMeshes(const std::vector<MeshStatus>& meshes) {
     ImGui::TableNextColumn();
     ImGui::TextUnformatted(groupedText(mesh.trianglesShown).c_str());
     ImGui::TableNextColumn();
-    ImGui::TextDisabled("%s", mesh.quality ? shareText(*mesh.quality).c_str() : mesh.state.c_str());
+    ImGui::TextDisabled("%s", mesh.state.c_str());
     if (!mesh.reason.empty() && ImGui::IsItemHovered()) {
       ImGui::SetTooltip("%s", mesh.reason.c_str());
     }

@@ -86,7 +86,7 @@ struct WindowCallbacks {
   std::function<SceneTurn()> turn;
   // Called when the picture is out of date and there is a scene. An error ends run().
   std::function<Result<void>(const ViewToDraw&)> draw;
-  // For the panel; asked some ten times a second while the panel is shown.
+  // For the panel and the message; asked some ten times a second.
   std::function<PanelStatus()> status;
   // More of a point of the surface than its coordinates.
   std::function<PickedPoint(const SurfacePlace&)> pick;

@@ -3,6 +3,7 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <fstream>
 #include <nlohmann/json.hpp>
 #include <system_error>
 #include <utility>
@@ -22,16 +23,6 @@ Result<void> writeJson(const std::filesystem::path& path, const ordered_json& do
   out.close();
   if (out.fail()) return fail(ErrorCode::unavailable, "cannot write " + path.string());
   return {};
-}
-
-std::string joined(const std::vector<std::string>& values) {
-  std::string line;
-  for (const std::string& value : values) {
-    if (!line.empty()) line += ',';
-    const bool quoted = value.find_first_of(",\"") != std::string::npos;
-    line += quoted ? '"' + value + '"' : value;
-  }
-  return line + '\n';
 }
 
 }  // namespace
@@ -55,19 +46,16 @@ Result<ExperimentFolder> ExperimentFolder::create(const std::filesystem::path& o
 }
 
 void ExperimentFolder::startCsv(const std::string& file, const std::vector<std::string>& columns) {
-  std::ofstream& out = csv_[file];
-  out.open(path_ / file, std::ios::trunc);
-  out << joined(columns);
+  csv_.try_emplace(file, path_ / file, columns);
 }
 
 void ExperimentFolder::addCsv(const std::string& file, const std::vector<std::string>& values) {
-  csv_.at(file) << joined(values);
+  csv_.at(file).row(values);
 }
 
 Result<void> ExperimentFolder::close() {
-  for (auto& [file, out] : csv_) {
-    out.close();
-    if (out.fail()) return fail(ErrorCode::unavailable, "cannot write " + (path_ / file).string());
+  for (auto& [file, csv] : csv_) {
+    if (Result<void> done = csv.close(); !done) return done;
   }
   ordered_json figures = ordered_json::array();
   for (const Figure& figure : figures_) {

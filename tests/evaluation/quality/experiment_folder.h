@@ -3,14 +3,14 @@
 #pragma once
 
 #include <filesystem>
-#include <fstream>
 #include <map>
-#include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "shared/result.h"
+#include "tests/evaluation/csv_file.h"
 
 namespace meshfront::evaluation {
 
@@ -49,7 +49,7 @@ class ExperimentFolder {
                                                        const std::string& name, int number);
 
   [[nodiscard]] const std::filesystem::path& path() const { return path_; }
-  // Starts a file with its header line. Then a line a call, values as they stand.
+  // Starts a file with its header line. Then a line a call.
   void startCsv(const std::string& file, const std::vector<std::string>& columns);
   void addCsv(const std::string& file, const std::vector<std::string>& values);
   void add(Figure figure) { figures_.push_back(std::move(figure)); }
@@ -66,7 +66,7 @@ class ExperimentFolder {
 
   std::filesystem::path path_;
   int number_ = 0;
-  std::map<std::string, std::ofstream> csv_;
+  std::map<std::string, CsvFile> csv_;
   std::vector<Figure> figures_;
   std::vector<Plot> plots_;
   std::vector<std::pair<std::string, std::string>> pictures_;

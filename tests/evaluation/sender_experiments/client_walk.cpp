@@ -4,8 +4,8 @@
 #include <functional>
 
 #include "shared/receiver/request_budget.h"
+#include "tests/evaluation/csv_file.h"
 #include "tests/evaluation/sender_driven/message_stream.h"
-#include "tests/evaluation/sender_experiments/csv_file.h"
 #include "tests/evaluation/sender_experiments/drawn_client.h"
 #include "tests/evaluation/sender_experiments/experiments.h"
 
@@ -16,7 +16,7 @@ constexpr unsigned kSettles = 30;      // rounds, about
 constexpr unsigned kRoundsAFrame = 2;  // of a client that moves
 constexpr double kSamePicture = 99;    // dB, in place of infinity
 
-Result<void> walk(const EvaluatedMesh& mesh, const CameraPath& path, DrawingTools& tools,
+Result<void> walk(const MeasuredMesh& mesh, const CameraPath& path, DrawingTools& tools,
                   CsvFile& csv) {
   auto client = DrawnClient::create(mesh, tools);
   if (!client) return tl::unexpected(client.error());
@@ -41,7 +41,7 @@ Result<void> walk(const EvaluatedMesh& mesh, const CameraPath& path, DrawingTool
 // What pictures of a mesh are compared with: the whole of it, on the same grid.
 class PictureSeries {
  public:
-  static Result<PictureSeries> create(const EvaluatedMesh& mesh, DrawingTools& tools,
+  static Result<PictureSeries> create(const MeasuredMesh& mesh, DrawingTools& tools,
                                       const ExperimentOptions& options, CsvFile& csv) {
     PictureSeries series(mesh, tools, options, csv);
     auto client = DrawnClient::create(mesh, tools);
@@ -105,7 +105,7 @@ class PictureSeries {
   }
 
  private:
-  PictureSeries(const EvaluatedMesh& mesh, DrawingTools& tools, const ExperimentOptions& options,
+  PictureSeries(const MeasuredMesh& mesh, DrawingTools& tools, const ExperimentOptions& options,
                 CsvFile& csv)
       : mesh_(&mesh),
         model_(&mesh.model),
@@ -136,7 +136,7 @@ class PictureSeries {
     return value;
   }
 
-  const EvaluatedMesh* mesh_;
+  const MeasuredMesh* mesh_;
   const SenderModel* model_;
   DrawingTools* tools_;
   std::filesystem::path folder_;
@@ -146,7 +146,7 @@ class PictureSeries {
   Picture whole_;
 };
 
-Result<void> drawPictures(const EvaluatedMesh& mesh, DrawingTools& tools,
+Result<void> drawPictures(const MeasuredMesh& mesh, DrawingTools& tools,
                           const ExperimentOptions& options, CsvFile& csv) {
   auto series = PictureSeries::create(mesh, tools, options, csv);
   if (!series) return tl::unexpected(series.error());
@@ -167,15 +167,15 @@ Result<void> drawPictures(const EvaluatedMesh& mesh, DrawingTools& tools,
 
 }  // namespace
 
-Result<void> measureClient(std::span<EvaluatedMesh> meshes, const ExperimentOptions& options) {
+Result<void> measureClient(std::span<MeasuredMesh> meshes, const ExperimentOptions& options) {
   auto tools = DrawingTools::create();
   if (!tools) return tl::unexpected(tools.error());
   CsvFile walked(options.output / "client.csv",
-                 "mesh,frame,round,triangles,records,new_records,splits_again,collapses,"
-                 "refinement_ms,drawing_ms,mesh_bytes");
-  CsvFile pictures(options.output / "pictures.csv",
-                   "mesh,file,way,tolerance,bytes_down,records,triangles,psnr");
-  for (const EvaluatedMesh& mesh : meshes) {
+                 {"mesh", "frame", "round", "triangles", "records", "new_records", "splits_again",
+                  "collapses", "refinement_ms", "drawing_ms", "mesh_bytes"});
+  CsvFile pictures(options.output / "pictures.csv", {"mesh", "file", "way", "tolerance",
+                                                     "bytes_down", "records", "triangles", "psnr"});
+  for (const MeasuredMesh& mesh : meshes) {
     CameraPathSpec spec = options.path;
     spec.rounds = 1;
     const auto path = CameraPath::place(spec, mesh.bounds, kPictureSize.aspect());

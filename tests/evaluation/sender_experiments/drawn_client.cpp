@@ -33,13 +33,13 @@ Result<DrawingTools> DrawingTools::create() {
                       std::move(counter)};
 }
 
-Result<DrawnClient> DrawnClient::create(const EvaluatedMesh& mesh, DrawingTools& tools) {
+Result<DrawnClient> DrawnClient::create(const MeasuredMesh& mesh, DrawingTools& tools) {
   auto begun = SelectivelyRefinedMesh::fromBase(mesh.model.base());
   if (!begun) return tl::unexpected(begun.error());
   return DrawnClient(mesh, tools, std::move(*begun));
 }
 
-DrawnClient::DrawnClient(const EvaluatedMesh& source, DrawingTools& tools,
+DrawnClient::DrawnClient(const MeasuredMesh& source, DrawingTools& tools,
                          SelectivelyRefinedMesh mesh)
     : source_(&source),
       tools_(&tools),

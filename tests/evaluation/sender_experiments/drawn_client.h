@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "shared/refinement/front_budget.h"
-#include "tests/evaluation/sender_experiments/evaluated_mesh.h"
+#include "tests/evaluation/sender_experiments/measured_mesh.h"
 #include "viewer/gl/gl_context.h"
 #include "viewer/gl/gpu_mesh.h"
 #include "viewer/gl/mesh_renderer.h"
@@ -27,7 +27,7 @@ struct DrawingTools {
 
 class DrawnClient {
  public:
-  [[nodiscard]] static Result<DrawnClient> create(const EvaluatedMesh& mesh, DrawingTools& tools);
+  [[nodiscard]] static Result<DrawnClient> create(const MeasuredMesh& mesh, DrawingTools& tools);
 
   [[nodiscard]] SelectivelyRefinedMesh& mesh() { return *mesh_; }
   // Pixels by vertex slot of the mesh as it is; valid until the next call.
@@ -51,11 +51,11 @@ class DrawnClient {
   Result<uint64_t> fetch(const Camera& camera, uint64_t& up);
 
  private:
-  DrawnClient(const EvaluatedMesh& source, DrawingTools& tools, SelectivelyRefinedMesh mesh);
+  DrawnClient(const MeasuredMesh& source, DrawingTools& tools, SelectivelyRefinedMesh mesh);
   Result<void> upload();
   Result<void> split(NodeIndex node);
 
-  const EvaluatedMesh* source_;
+  const MeasuredMesh* source_;
   DrawingTools* tools_;
   std::unique_ptr<SelectivelyRefinedMesh> mesh_;  // the budget keeps its address
   GpuMesh gpuMesh_;

@@ -12,7 +12,7 @@
 namespace meshfront::evaluation {
 namespace {
 
-using Experiment = Result<void> (*)(std::span<EvaluatedMesh>, const ExperimentOptions&);
+using Experiment = Result<void> (*)(std::span<MeasuredMesh>, const ExperimentOptions&);
 
 const std::vector<std::pair<std::string, Experiment>> kExperiments{
     {"cost", measureWholeMesh},    {"receivers", measureReceivers}, {"bytes", measureBytes},
@@ -29,10 +29,10 @@ int run(const std::vector<std::string>& packs, const std::vector<std::string>& o
   std::error_code failed;
   std::filesystem::create_directories(options.output, failed);
   if (failed) return complain({ErrorCode::invalid, options.output.string() + ": no such folder"});
-  std::vector<EvaluatedMesh> meshes;
+  std::vector<MeasuredMesh> meshes;
   for (const std::string& path : packs) {
     const auto start = Clock::now();
-    auto mesh = EvaluatedMesh::open(path);
+    auto mesh = MeasuredMesh::open(path);
     if (!mesh) return complain(mesh.error());
     std::printf("%s: %u nodes, loaded in %.2f s, %.1f MB\n", mesh->name.c_str(),
                 mesh->model.nodeCount(),

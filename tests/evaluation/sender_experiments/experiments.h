@@ -5,7 +5,7 @@
 #include <span>
 
 #include "shared/result.h"
-#include "tests/evaluation/sender_experiments/evaluated_mesh.h"
+#include "tests/evaluation/sender_experiments/measured_mesh.h"
 #include "viewer/run/camera_path.h"
 
 namespace meshfront::evaluation {
@@ -18,15 +18,15 @@ struct ExperimentOptions {
 };
 
 // sender_cost.csv: the whole mesh by parts, both ways. The best of some runs.
-Result<void> measureWholeMesh(std::span<EvaluatedMesh> meshes, const ExperimentOptions& options);
+Result<void> measureWholeMesh(std::span<MeasuredMesh> meshes, const ExperimentOptions& options);
 // receivers.csv: many receivers, each on a path of its own.
-Result<void> measureReceivers(std::span<EvaluatedMesh> meshes, const ExperimentOptions& options);
+Result<void> measureReceivers(std::span<MeasuredMesh> meshes, const ExperimentOptions& options);
 // bytes.csv: what goes over a sender-driven connection, by coding of IDs.
-Result<void> measureBytes(std::span<EvaluatedMesh> meshes, const ExperimentOptions& options);
+Result<void> measureBytes(std::span<MeasuredMesh> meshes, const ExperimentOptions& options);
 // session.csv: memory a session and bytes along the path.
-Result<void> measureSessions(std::span<EvaluatedMesh> meshes, const ExperimentOptions& options);
+Result<void> measureSessions(std::span<MeasuredMesh> meshes, const ExperimentOptions& options);
 // client.csv: triangles, refinement and drawing along the path; pictures.csv and PNG files: fixed
 // tolerance and fixed bytes. Needs OpenGL.
-Result<void> measureClient(std::span<EvaluatedMesh> meshes, const ExperimentOptions& options);
+Result<void> measureClient(std::span<MeasuredMesh> meshes, const ExperimentOptions& options);
 
 }  // namespace meshfront::evaluation

@@ -4,7 +4,7 @@
 #include <numbers>
 
 #include "shared/receiver/request_budget.h"
-#include "tests/evaluation/sender_experiments/csv_file.h"
+#include "tests/evaluation/csv_file.h"
 #include "tests/evaluation/sender_experiments/experiments.h"
 
 namespace meshfront::evaluation {
@@ -15,7 +15,7 @@ constexpr unsigned kFewViews = 12;  // where there are very many receivers
 constexpr double kTurn = 180;       // degrees, all in all
 
 // Half a turn around the mesh, from a start of its own, into a close-up and out again.
-Camera cameraOf(const EvaluatedMesh& mesh, unsigned receiver, unsigned receivers, unsigned view,
+Camera cameraOf(const MeasuredMesh& mesh, unsigned receiver, unsigned receivers, unsigned view,
                 unsigned views) {
   const double azimuth = 360.0 * receiver / receivers + kTurn * view / views;
   const double wave = std::sin(std::numbers::pi * view / views);
@@ -33,7 +33,7 @@ struct ReceiverCosts {
   size_t sessionBytes = 0;
 };
 
-Result<ReceiverCosts> serveReceivers(const EvaluatedMesh& mesh, const SenderOptions& options,
+Result<ReceiverCosts> serveReceivers(const MeasuredMesh& mesh, const SenderOptions& options,
                                      unsigned receivers, unsigned views) {
   ReceiverCosts costs;
   std::vector<std::unique_ptr<SenderSession>> sessions;
@@ -70,10 +70,11 @@ Result<ReceiverCosts> serveReceivers(const EvaluatedMesh& mesh, const SenderOpti
 
 }  // namespace
 
-Result<void> measureReceivers(std::span<EvaluatedMesh> meshes, const ExperimentOptions& options) {
+Result<void> measureReceivers(std::span<MeasuredMesh> meshes, const ExperimentOptions& options) {
   CsvFile csv(options.output / "receivers.csv",
-              "mesh,receivers,variant,views,records,requests,sender_seconds,service_seconds,"
-              "sender_ms_a_receiver,service_ms_a_receiver,ratio,session_bytes_a_receiver");
+              {"mesh", "receivers", "variant", "views", "records", "requests", "sender_seconds",
+               "service_seconds", "sender_ms_a_receiver", "service_ms_a_receiver", "ratio",
+               "session_bytes_a_receiver"});
   struct Variant {
     const char* name = "";
     SenderOptions options;
@@ -84,7 +85,7 @@ Result<void> measureReceivers(std::span<EvaluatedMesh> meshes, const ExperimentO
               {Bookkeeping::vertexFront, SenderOrder::error, IdCoding::published}},
       Variant{"tags; adaptive",
               {Bookkeeping::windowedTags, SenderOrder::error, IdCoding::adaptive}}};
-  for (const EvaluatedMesh& mesh : meshes) {
+  for (const MeasuredMesh& mesh : meshes) {
     // The service indexes its chunks when they are first asked for.
     const auto everything = wholeMeshRequests(mesh.model);
     if (!everything) return tl::unexpected(everything.error());

@@ -3,8 +3,8 @@
 #include <algorithm>
 
 #include "shared/receiver/request_budget.h"
+#include "tests/evaluation/csv_file.h"
 #include "tests/evaluation/sender_driven/message_stream.h"
-#include "tests/evaluation/sender_experiments/csv_file.h"
 #include "tests/evaluation/sender_experiments/experiments.h"
 
 namespace meshfront::evaluation {
@@ -27,7 +27,7 @@ uint64_t answerWhole(SenderSession& session, const ViewRequest& view, uint64_t& 
   return sent;
 }
 
-Result<void> walkTwice(const EvaluatedMesh& mesh, const CameraPath& path, float tolerance,
+Result<void> walkTwice(const MeasuredMesh& mesh, const CameraPath& path, float tolerance,
                        CsvFile& csv) {
   SenderSession tags(mesh.model, {});
   SenderOptions frontOptions;
@@ -54,11 +54,12 @@ Result<void> walkTwice(const EvaluatedMesh& mesh, const CameraPath& path, float 
 
 }  // namespace
 
-Result<void> measureSessions(std::span<EvaluatedMesh> meshes, const ExperimentOptions& options) {
+Result<void> measureSessions(std::span<MeasuredMesh> meshes, const ExperimentOptions& options) {
   CsvFile csv(options.output / "session.csv",
-              "mesh,tolerance,frame,round,sent,new_splits,tags_bytes,single_window_bytes,"
-              "front_bytes,all_vertices_bytes,queue_bytes,bytes_up,bytes_down");
-  for (const EvaluatedMesh& mesh : meshes) {
+              {"mesh", "tolerance", "frame", "round", "sent", "new_splits", "tags_bytes",
+               "single_window_bytes", "front_bytes", "all_vertices_bytes", "queue_bytes",
+               "bytes_up", "bytes_down"});
+  for (const MeasuredMesh& mesh : meshes) {
     CameraPathSpec spec = options.path;
     spec.rounds = 1;
     const auto path = CameraPath::place(spec, mesh.bounds, kPictureSize.aspect());

@@ -5,7 +5,7 @@
 
 #include "shared/http/split_request.h"
 #include "shared/receiver/request_budget.h"
-#include "tests/evaluation/sender_experiments/csv_file.h"
+#include "tests/evaluation/csv_file.h"
 #include "tests/evaluation/sender_experiments/experiments.h"
 
 namespace meshfront::evaluation {
@@ -36,7 +36,7 @@ constexpr std::array kTimedParts{&SenderTimes::findSplits, &SenderTimes::visibil
                                  &SenderTimes::frontUpdate, &SenderTimes::encodeIds};
 
 // The processor's time for all of it; parts apart, where they are asked for.
-double sendAll(const EvaluatedMesh& mesh, const SenderOptions& options, SenderTimes* times) {
+double sendAll(const MeasuredMesh& mesh, const SenderOptions& options, SenderTimes* times) {
   ViewRequest view = mesh.view(mesh.camera("whole"));
   view.everything = true;
   const double start = processorSeconds();
@@ -49,7 +49,7 @@ double sendAll(const EvaluatedMesh& mesh, const SenderOptions& options, SenderTi
                                                        : std::numeric_limits<double>::quiet_NaN();
 }
 
-double copyBase(const EvaluatedMesh& mesh) {
+double copyBase(const MeasuredMesh& mesh) {
   const double start = processorSeconds();
   const std::vector<uint8_t> copy(mesh.model.baseBytes().begin(), mesh.model.baseBytes().end());
   const double seconds = processorSeconds() - start;
@@ -59,8 +59,9 @@ double copyBase(const EvaluatedMesh& mesh) {
 class CostTable {
  public:
   explicit CostTable(const std::filesystem::path& folder)
-      : csv_(folder / "sender_cost.csv", "mesh,way,variant,part,records,seconds,ns_per_record") {}
-  void row(const EvaluatedMesh& mesh, const char* way, const char* variant, const char* part,
+      : csv_(folder / "sender_cost.csv",
+             {"mesh", "way", "variant", "part", "records", "seconds", "ns_per_record"}) {}
+  void row(const MeasuredMesh& mesh, const char* way, const char* variant, const char* part,
            double seconds) {
     const uint32_t records = mesh.model.nodeCount();
     csv_.row(mesh.name, way, variant, part, records, seconds, 1e9 * seconds / records);
@@ -71,7 +72,7 @@ class CostTable {
   CsvFile csv_;
 };
 
-void measureSender(const EvaluatedMesh& mesh, const SenderVariant& variant, int runs, double base,
+void measureSender(const MeasuredMesh& mesh, const SenderVariant& variant, int runs, double base,
                    CostTable& table) {
   double total = std::numeric_limits<double>::infinity();
   SenderTimes best;
@@ -95,7 +96,7 @@ void measureSender(const EvaluatedMesh& mesh, const SenderVariant& variant, int 
   row("total", total);
 }
 
-Result<void> measureOurs(const EvaluatedMesh& mesh, int runs, double base, CostTable& table) {
+Result<void> measureOurs(const MeasuredMesh& mesh, int runs, double base, CostTable& table) {
   const auto requests = wholeMeshRequests(mesh.model);
   if (!requests) return tl::unexpected(requests.error());
   double decode = std::numeric_limits<double>::infinity();
@@ -128,9 +129,9 @@ Result<void> measureOurs(const EvaluatedMesh& mesh, int runs, double base, CostT
 
 }  // namespace
 
-Result<void> measureWholeMesh(std::span<EvaluatedMesh> meshes, const ExperimentOptions& options) {
+Result<void> measureWholeMesh(std::span<MeasuredMesh> meshes, const ExperimentOptions& options) {
   CostTable table(options.output);
-  for (const EvaluatedMesh& mesh : meshes) {
+  for (const MeasuredMesh& mesh : meshes) {
     // The best of as many as take a second or so.
     const int runs = std::clamp(static_cast<int>(5e5 / mesh.model.nodeCount()), 3, 9);
     double base = std::numeric_limits<double>::infinity();

@@ -3,16 +3,17 @@
 #include <limits>
 
 #include "shared/receiver/request_budget.h"
+#include "tests/evaluation/csv_file.h"
 #include "tests/evaluation/sender_driven/message_stream.h"
-#include "tests/evaluation/sender_experiments/csv_file.h"
 #include "tests/evaluation/sender_experiments/experiments.h"
 
 namespace meshfront::evaluation {
 
-Result<void> measureBytes(std::span<EvaluatedMesh> meshes, const ExperimentOptions& options) {
-  CsvFile csv(options.output / "bytes.csv",
-              "mesh,view,order,ids,criteria,records,messages,bytes_up,bytes_down,id_bits_a_record,"
-              "record_bits_a_record,criterion_bits_a_record");
+Result<void> measureBytes(std::span<MeasuredMesh> meshes, const ExperimentOptions& options) {
+  CsvFile csv(
+      options.output / "bytes.csv",
+      {"mesh", "view", "order", "ids", "criteria", "records", "messages", "bytes_up", "bytes_down",
+       "id_bits_a_record", "record_bits_a_record", "criterion_bits_a_record"});
   struct Coding {
     const char* name;
     IdCoding ids;
@@ -20,7 +21,7 @@ Result<void> measureBytes(std::span<EvaluatedMesh> meshes, const ExperimentOptio
   const std::array codings{Coding{"published", IdCoding::published},
                            Coding{"bitstring", IdCoding::bitstring},
                            Coding{"adaptive", IdCoding::adaptive}};
-  for (const EvaluatedMesh& mesh : meshes)
+  for (const MeasuredMesh& mesh : meshes)
     for (const char* view : {"all", "whole", "half", "close"})
       for (const SenderOrder order : {SenderOrder::error, SenderOrder::significance})
         for (const Coding& coding : codings)

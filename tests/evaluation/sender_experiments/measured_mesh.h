@@ -16,14 +16,14 @@ namespace meshfront::evaluation {
 
 inline constexpr PixelSize kPictureSize{500, 500};
 
-struct EvaluatedMesh {
+struct MeasuredMesh {
   std::string name;
   std::shared_ptr<const Pack> pack;
   std::shared_ptr<PackStore> store;
   SenderModel model;
   Bounds bounds;
 
-  [[nodiscard]] static Result<EvaluatedMesh> open(const std::string& path);
+  [[nodiscard]] static Result<MeasuredMesh> open(const std::string& path);
   [[nodiscard]] ViewRequest view(const Camera& camera, float tolerance = 0) const {
     return ViewRequest::of(camera, kPictureSize, model.quantization(), tolerance);
   }
@@ -35,12 +35,11 @@ struct EvaluatedMesh {
 
 // Octets that a sender-driven connection sends before the first split: the mesh's grid and bounds,
 // the base mesh, the message's head.
-[[nodiscard]] size_t helloBytes(const EvaluatedMesh& mesh);
+[[nodiscard]] size_t helloBytes(const MeasuredMesh& mesh);
 
 // What a service is asked for one after the other: URL spellings of sets of nodes.
 struct SetRequest {
-  std::string ids;      // base64url, as it stands in a URL
-  size_t setBytes = 0;  // of the bitstring
+  std::string ids;  // base64url, as it stands in a URL
   size_t count = 0;
 };
 // `nodes` of the model, ascending, an antichain.

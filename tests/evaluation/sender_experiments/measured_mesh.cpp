@@ -1,4 +1,4 @@
-#include "tests/evaluation/sender_experiments/evaluated_mesh.h"
+#include "tests/evaluation/sender_experiments/measured_mesh.h"
 
 #include <algorithm>
 #include <ctime>
@@ -20,18 +20,18 @@ constexpr size_t kMostWanted = size_t{1} << 18;
 
 }  // namespace
 
-Result<EvaluatedMesh> EvaluatedMesh::open(const std::string& path) {
+Result<MeasuredMesh> MeasuredMesh::open(const std::string& path) {
   auto pack = Pack::open(path);
   if (!pack) return tl::unexpected(pack.error());
   auto model = SenderModel::load(**pack);
   if (!model) return tl::unexpected(model.error());
   const MeshMetadata& metadata = (*pack)->metadata();
   auto store = std::make_shared<PackStore>(*pack, std::make_shared<MemoryBudget>(kIndexBytes));
-  return EvaluatedMesh{std::filesystem::path(path).stem().string(), *pack, std::move(store),
-                       std::move(*model), Bounds::of(metadata.boundsMin, metadata.boundsMax)};
+  return MeasuredMesh{std::filesystem::path(path).stem().string(), *pack, std::move(store),
+                      std::move(*model), Bounds::of(metadata.boundsMin, metadata.boundsMax)};
 }
 
-size_t helloBytes(const EvaluatedMesh& mesh) {
+size_t helloBytes(const MeasuredMesh& mesh) {
   const auto base = mesh.model.baseBytes();
   return kMessageHead +
          MeshHello{mesh.model.quantization(), {}, {}, {base.begin(), base.end()}}.toBytes().size();
@@ -43,7 +43,7 @@ Result<SetRequest> setRequest(const SenderModel& model, std::span<const uint32_t
   for (const uint32_t node : nodes) ids.push_back(model.id(node));
   const auto bitstring = encodeTreeBitstring(ids);
   if (!bitstring) return tl::unexpected(bitstring.error());
-  return SetRequest{base64urlEncode(*bitstring), bitstring->size(), nodes.size()};
+  return SetRequest{base64urlEncode(*bitstring), nodes.size()};
 }
 
 Result<std::vector<SetRequest>> wholeMeshRequests(const SenderModel& model) {
