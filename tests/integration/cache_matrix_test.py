@@ -8,6 +8,7 @@ meshfront-proxy); each check is made for each of them, and the last lines printe
 Bodies are compared with those of the service asked directly. A program that is not installed fails.
 """
 import contextlib
+import json
 import os
 import shutil
 import signal
@@ -44,8 +45,8 @@ class Origin:
         self.deep, self.wide = (self.fixed_part(mesh) for mesh in ("deep", "wide"))
 
     def fixed_part(self, mesh):
-        link = ask(self.ports[0], f"/v1/meshes/{mesh}").body.decode().split('"base":"')[1]
-        return link[:link.index("/base")]
+        link = json.loads(ask(self.ports[0], f"/v1/meshes/{mesh}").body)["links"]["base"]
+        return link.removesuffix("/base")
 
     def body(self, target, method="GET", content=None):
         headers = {"Content-Type": BINARY} if content is not None else None

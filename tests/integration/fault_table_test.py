@@ -176,8 +176,8 @@ class Prober:
 
 
 def fixed_part(port):
-    link = ask(port, "/v1/meshes/mesh").body.decode().split('"base":"')[1]
-    return link[:link.index("/base")]
+    link = json.loads(ask(port, "/v1/meshes/mesh").body)["links"]["base"]
+    return link.removesuffix("/base")
 
 
 def kill(program):

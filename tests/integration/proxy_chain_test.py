@@ -3,6 +3,7 @@
 
     proxy_chain_test.py BIN_FOLDER
 """
+import json
 import os
 import shutil
 import subprocess
@@ -59,8 +60,8 @@ class ProxyChain(unittest.TestCase):
                               "--listen", "127.0.0.1:0")
         cls.inner = cls.proxy_of(cls.service.port)
         cls.outer = cls.proxy_of(cls.inner.port)
-        link = ask(cls.service.port, "/v1/meshes/mesh").body.decode().split('"base":"')[1]
-        cls.fixed = link[:link.index("/base")]
+        link = json.loads(ask(cls.service.port, "/v1/meshes/mesh").body)["links"]["base"]
+        cls.fixed = link.removesuffix("/base")
         roots = [(tree, "") for tree in range(40)
                  if ask(cls.service.port, f"{cls.fixed}/splits/{ids([(tree, '')])}").status == 200]
         cls.targets = ["/v1/meshes", "/v1/meshes/mesh"] + [
