@@ -229,7 +229,8 @@ Result<HttpResponse> RecordService::splits(const HttpRequest& request, const Rou
   if (fetched) response.set("Cache-Status", cacheStatus(records, *fetched));
   if (byQuery) {
     std::string target = splitTarget(route.mesh, route.revision, request.content, set->expansion);
-    if (target.size() <= options_.maxTarget) response.set("Content-Location", std::move(target));
+    if (target.size() <= std::min(options_.maxTarget, kMaxNamedOctets))
+      response.set("Content-Location", std::move(target));
   }
   return response;
 }

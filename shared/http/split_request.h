@@ -19,6 +19,8 @@
 namespace meshfront {
 
 inline constexpr size_t kMaxTargetOctets = 8000;  // nginx: 8 KiB, Squid: 8,192 octets
+// Of a target that an answer names (Content-Location): nginx takes 4 KiB of an answer's fields.
+inline constexpr size_t kMaxNamedOctets = 2000;
 inline constexpr size_t kMaxContentOctets = size_t{1} << 20;
 
 struct SplitRequest {

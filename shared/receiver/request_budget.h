@@ -15,7 +15,7 @@ struct ReceiverLimits {
 };
 
 inline constexpr uint32_t kSmallestAdaptiveBatch = 200;
-inline constexpr uint32_t kLargestAdaptiveBatch = 4'000;
+inline constexpr uint32_t kLargestAdaptiveBatch = 2'000;  // some 2,600 octets of URL: see below
 
 // Small while each record shows and the ranking changes fast; larger when single ones hardly show,
 // which keeps round trips and request bytes (fewer bits an ID in larger sets) down. Depends on the

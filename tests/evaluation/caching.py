@@ -63,7 +63,7 @@ def receive(programs, url, views, fetch, receivers, seed):
                ALIVE, "--fetch", fetch, "--seed", seed, "--json")
     report = json.loads(done.stdout) if done.stdout else {}
     if report.get("settled") != receivers:
-        sys.exit(f"meshfront-load {url}: {report.get('settled', 'none')} of {receivers} settled. {done.stderr.strip()}")
+        sys.exit(f"meshfront-load {url}: {report.get('settled', 'none')} of {receivers} settled. {done.stdout.strip()} {done.stderr.strip()}")
     return report
 
 

@@ -44,6 +44,8 @@ def draw(folder, plot):
             (axes.set_xscale if name == "x" else axes.set_yscale)("log")
         axis.set_major_formatter(FuncFormatter(in_words))
         axis.set_label_text(plot[name])
+    if "y_most" in plot:
+        axes.set_ylim(top=min(axes.get_ylim()[1], plot["y_most"]))
     axes.set_title(plot["title"], fontsize=12)
     if len(plot["lines"]) > 1:
         axes.legend(frameon=False, fontsize=9)

@@ -57,7 +57,8 @@ class ReceiverDriven:
 
 
 class SenderDriven:
-    """sender-driven-client against sender-driven-server, whose log tells when which octets were there."""
+    """sender-driven-client against sender-driven-server, whose log tells when which octets were there. In
+    the order that needs the fewest."""
 
     label = "sender-driven"
 
@@ -65,7 +66,8 @@ class SenderDriven:
         self.programs, self.pack, self.octets_to_target, self.options = programs, pack, octets_to_target, options
 
     def __enter__(self):
-        self.server = Server(self.programs / "sender-driven-server", self.pack, "--listen", "127.0.0.1:0")
+        self.server = Server(self.programs / "sender-driven-server", self.pack, "--listen", "127.0.0.1:0",
+                             "--order", "significance")
         return self
 
     def __exit__(self, *error):

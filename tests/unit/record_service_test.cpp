@@ -215,6 +215,17 @@ TEST_F(RecordServiceTest, LeavesOutALocationThatIsTooLong) {
   EXPECT_EQ(response.status, 200U);
   EXPECT_EQ(bytes(response), large.answerTo(wanted, {}));
   EXPECT_EQ(field(response, "Content-Location"), "");
+
+  // A URL that may be asked for can be too long for a field of an answer.
+  const std::vector<NodeId> some(wanted.begin(), wanted.begin() + wanted.size() / 4);
+  const auto fewer = *encodeTreeBitstring(some);
+  EXPECT_LT(splitTarget("large", revisionOf(large.content), fewer, {}).size(), kMaxTargetOctets);
+  query.content = fewer;
+  EXPECT_EQ(field(service.answer(query), "Content-Location"), "");
+  const auto few = *encodeTreeBitstring(std::span(wanted).first(3));
+  query.content = few;
+  EXPECT_EQ(field(service.answer(query), "Content-Location"),
+            splitTarget("large", revisionOf(large.content), few, {}));
 }
 
 TEST_F(RecordServiceTest, CountsWhatItDid) {

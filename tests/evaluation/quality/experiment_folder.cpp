@@ -88,6 +88,7 @@ Result<void> ExperimentFolder::close() {
                      {"log_x", true},
                      {"lines", std::move(lines)},
                      {"caption", plot.caption}});
+    if (plot.yMost) plots.back()["y_most"] = *plot.yMost;
   }
   ordered_json pictures = ordered_json::array();
   for (const auto& [file, caption] : pictures_)

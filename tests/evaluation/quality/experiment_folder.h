@@ -38,6 +38,7 @@ struct Plot {
   std::string csv;
   std::string xColumn;
   std::string yColumn;
+  std::optional<double> yMost;  // what lies above is cut off
   std::vector<PlotLine> lines;
   std::string caption;
 };

@@ -52,11 +52,29 @@ double FullDecoding::distanceFromRing(VertexSlot slot, const glm::dvec3& point) 
   return nearest;
 }
 
+// Pictures show both sides of a surface; a cone of normals tells what looks away only where they
+// look outwards. By the volume about the middle of all vertices, whose sign holes do not change.
+bool FullDecoding::isInsideOut() const {
+  const auto positions = mesh_.positions();
+  glm::dvec3 middle(0);
+  for (const GridPosition& position : positions) middle += gridPoint(position);
+  middle /= static_cast<double>(std::max<size_t>(positions.size(), 1));
+  double volume = 0;
+  for (const Triangle& corners : mesh_.drawnCorners()) {
+    if (corners[0] == corners[1]) continue;
+    volume += glm::dot(gridPoint(positions[corners[0]]) - middle,
+                       glm::cross(gridPoint(positions[corners[1]]) - middle,
+                                  gridPoint(positions[corners[2]]) - middle));
+  }
+  return volume < 0;
+}
+
 void FullDecoding::measureLeaves() {
   extents_.resize(mesh_.vertexSlotCount());
   const auto positions = mesh_.positions();
   for (uint32_t slot = 0; slot < extents_.size(); ++slot)
     extents_[slot].includePoint(gridPoint(positions[slot]));
+  const double outwards = isInsideOut() ? -1 : 1;
   for (const Triangle& corners : mesh_.drawnCorners()) {
     if (corners[0] == corners[1]) continue;
     const std::array<glm::dvec3, 3> at{gridPoint(positions[corners[0]]),
@@ -68,7 +86,7 @@ void FullDecoding::measureLeaves() {
       NodeExtent& extent = extents_[corners[i]];
       extent.includePoint(at[(i + 1) % 3]);
       extent.includePoint(at[(i + 2) % 3]);
-      if (area > 0) extent.includeNormal(normal / area);
+      if (area > 0) extent.includeNormal(outwards / area * normal);
     }
   }
 }

@@ -35,6 +35,7 @@ class FullDecoding {
   explicit FullDecoding(SelectivelyRefinedMesh mesh) : mesh_(std::move(mesh)) {}
   Result<void> splitChunk(uint32_t number, std::span<const uint8_t> bytes);
   [[nodiscard]] double distanceFromRing(VertexSlot slot, const glm::dvec3& point) const;
+  [[nodiscard]] bool isInsideOut() const;
   void measureLeaves();
 
   SelectivelyRefinedMesh mesh_;

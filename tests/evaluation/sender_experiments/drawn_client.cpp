@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 
 #include "shared/bits/crc32c.h"
 #include "shared/receiver/ranking.h"
 #include "shared/receiver/request_budget.h"
+#include "shared/scene/likely_error.h"
 
 namespace meshfront::evaluation {
 namespace {
@@ -124,7 +126,15 @@ Result<DrawnClient::Refined> DrawnClient::refine(const Camera& camera, unsigned 
 Result<uint64_t> DrawnClient::fetch(const Camera& camera, uint64_t& up) {
   const auto counted = count(camera);
   if (!counted) return tl::unexpected(counted.error());
-  std::vector<Candidate> wanted = visibleCandidates(*mesh_, *counted, {});
+  const Quantization& grid = source_->model.quantization();
+  const glm::dvec3 origin(grid.origin[0], grid.origin[1], grid.origin[2]);
+  std::vector<uint8_t> lift;
+  liftByLikelyError(*mesh_, *counted, (camera.eye - origin) / grid.step,
+                    kPictureSize.height / (2 * std::tan(camera.verticalFov / 2)), lift);
+  RankingBias bias;
+  bias.lift = lift;
+  bias.levelsBehind = kMostErrorLift;
+  std::vector<Candidate> wanted = visibleCandidates(*mesh_, *counted, {}, bias);
   keepFirst(wanted, adaptiveBatch(mesh_->splitsApplied()), RankOrder::significance);
   if (wanted.empty()) return 0;
   uint64_t bits = 0;
