@@ -40,7 +40,7 @@ def main():
     arguments.add_argument("--bin", type=pathlib.Path, default=pathlib.Path("build/bin"))
     arguments.add_argument("--views", nargs="*", default=["whole", "half", "close"])
     arguments.add_argument("--targets", nargs="*", type=float, default=[35, 40])
-    arguments.add_argument("--batch", default="200", help="records a request while looking for targets")
+    arguments.add_argument("--batch", default="0", help="records a request while looking for targets; 0: as many as the viewer takes")
     options = arguments.parse_args()
     programs = options.bin
     costs, exact, pictures = [], [], []
