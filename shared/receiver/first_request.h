@@ -10,8 +10,9 @@
 
 namespace meshfront {
 
-// Records that the first answer may hold, whatever the link: found with tests/evaluation/quality,
-// where twice and half as many need more octets to a good picture.
+// Records that the first answer may hold where the link is short (a long one takes more: see
+// ExactSource). Found with tests/evaluation/quality: on most meshes twice or half as many need more
+// octets to a good picture.
 inline constexpr double kFirstRecords = 400;
 
 // Up to level `most` below a node of `level`, the node's own included: from one octave to the next

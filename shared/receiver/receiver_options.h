@@ -64,7 +64,7 @@ struct ReceiverStatistics {
   uint64_t recordsFromDisk = 0;  // of these
   uint64_t malformed = 0;
   uint64_t cancelled = 0;          // requests that the view overtook; their octets are not counted
-  uint64_t expanded = 0;           // requests for descendants by need
+  uint64_t expanded = 0;           // requests for descendants, the first one and those by need
   uint64_t answersFromCaches = 0;  // of `answers`, as far as headers tell (cameFromCache())
   uint64_t idsRequested = 0;       // nodes named in requests
   uint64_t setOctets = 0;          // of their bitstrings, before base64url

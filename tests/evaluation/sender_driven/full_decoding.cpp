@@ -53,7 +53,8 @@ double FullDecoding::distanceFromRing(VertexSlot slot, const glm::dvec3& point) 
 }
 
 // Pictures show both sides of a surface; a cone of normals tells what looks away only where they
-// look outwards. By the volume about the middle of all vertices, whose sign holes do not change.
+// look outwards. By the sign of the volume about the middle of all vertices, which holds for closed
+// surfaces, those with small holes, and terrains seen from the side that their normals are on.
 bool FullDecoding::isInsideOut() const {
   const auto positions = mesh_.positions();
   glm::dvec3 middle(0);
