@@ -50,32 +50,19 @@ configure_and_build() {
   cmake --preset "$preset" && cmake --build --preset "$preset" --parallel "$jobs" "$@"
 }
 
-# An attribute of the one <testsuite> that ctest writes.
-suite_attribute() {
-  sed -n "s/^.*[[:space:]]$2=\"\([0-9]*\)\".*$/\1/p" "$1" | head --lines=1
-}
-
-# tests NAME PRESET [WRAPPER...]: runs ctest and counts each test.
+# tests NAME PRESET BUILD [WRAPPER...]: runs ctest and counts each test.
 tests() {
-  local name=$1 preset=$2 begin=$SECONDS status=0
-  shift 2
-  local report=$PWD/$logs/$preset-tests.xml
+  local name=$1 preset=$2 build=$3 begin=$SECONDS status=0
+  shift 3
+  local report=$PWD/$logs/$preset-tests.xml counts
   echo "== $name"
-  rm -f "$report"
+  rm -rf "$report" "$build/unit-shards"
   # One more than there are cores, since some tests mostly wait.
   "$@" ctest --preset "$preset" --parallel $((jobs + 1)) --output-junit "$report" || status=$?
-  local total=0 bad=0 left=0
-  if [[ -s $report ]]; then
-    total=$(suite_attribute "$report" tests)
-    bad=$(suite_attribute "$report" failures)
-    left=$(($(suite_attribute "$report" skipped) + $(suite_attribute "$report" disabled)))
-  fi
+  read -ra counts < <(python3 tests/count_tests.py "$report" "$build/unit-shards" || echo 0 0 0)
   # ctest failed, but no test did: no tests, or a crash of ctest.
-  if ((status != 0 && bad == 0)); then
-    bad=1
-    total=$((total + 1))
-  fi
-  record "$name" $((SECONDS - begin)) $((total - bad - left)) "$bad" "$left"
+  if ((status != 0 && counts[1] == 0)); then counts[1]=1; fi
+  record "$name" $((SECONDS - begin)) "${counts[@]}"
 }
 
 sources() {
@@ -97,13 +84,13 @@ if setarch --addr-no-randomize true 2>/dev/null; then fixed_addresses=(setarch -
 mkdir -p "$logs"
 
 if check "build" ci-build.log configure_and_build ci; then
-  tests "tests" ci
+  tests "tests" ci build
 fi
 if check "build with address and undefined sanitizers" asan-build.log configure_and_build asan; then
-  tests "tests with address and undefined sanitizers" asan
+  tests "tests with address and undefined sanitizers" asan build/asan
 fi
 if check "build with thread sanitizer" tsan-build.log configure_and_build tsan --target unit-tests; then
-  tests "tests with thread sanitizer" tsan "${fixed_addresses[@]}"
+  tests "tests with thread sanitizer" tsan build/tsan "${fixed_addresses[@]}"
 fi
 check "clang-format" clang-format.log formatted || true
 check "clang-tidy" clang-tidy.log tidy || true

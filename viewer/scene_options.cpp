@@ -21,6 +21,7 @@ SceneOptions commonOptions(const ViewOptions& options) {
   result.receiver.order = options.order;
   result.receiver.batch = options.batch;
   result.receiver.window = options.window;
+  result.rim = options.rim;
   if (options.triangleBudget > 0) result.limits.triangles = options.triangleBudget;
   if (options.memoryBudget > 0) result.limits.bytes = options.memoryBudget;
   if (options.cacheDir) result.receiver.cacheFolder = *options.cacheDir;

@@ -45,6 +45,7 @@ struct ViewOptions {
   std::optional<std::filesystem::path> cacheDir;
   uint64_t cacheBudget = uint64_t{1} << 30;  // bytes
   bool complete = false;                     // when all that is seen is there: the rest
+  bool rim = true;                           // shared/scene/seen_rim.h
   bool foveation = true;                     // in a window
   bool prefetch = true;                      // likewise
   bool geomorph = true;                      // likewise

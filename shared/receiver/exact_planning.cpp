@@ -27,10 +27,9 @@ constexpr std::chrono::milliseconds kTripWorthGuessing{10};
 // How many records the first answer may hold. On a long link more cost no time and spare further
 // round trips; what of them turns out not to be seen is some of kFirstFlightBytes.
 double ExactSource::firstRoom() const {
-  const auto trip = to_.link.roundTrip();
-  if (to_.options.freshRanking || !trip || *trip < kTripWorthGuessing) return kFirstRecords;
-  const double bytes = std::min(
-      kLikelyBytesPerSecond * std::chrono::duration<double>(*trip).count(), kFirstFlightBytes);
+  if (!tripWorthGuessing()) return kFirstRecords;
+  const std::chrono::duration<double> trip = *to_.link.roundTrip();
+  const double bytes = std::min(kLikelyBytesPerSecond * trip.count(), kFirstFlightBytes);
   return std::max(kFirstRecords, bytes / kLikelyRecordBytes);
 }
 
@@ -58,11 +57,16 @@ uint64_t ExactSource::likelyRecords(const RecordRequest& request) const {
   return static_cast<uint64_t>(std::min(records, static_cast<double>(mesh_.splitCount())));
 }
 
+bool ExactSource::tripWorthGuessing() const {
+  const auto trip = to_.link.roundTrip();
+  return !to_.options.freshRanking && trip && *trip >= kTripWorthGuessing;
+}
+
 // Generations to ask for in one go. Where all that is wished for does not fill the link for a round
 // trip, the next generation costs no time, and some octets for what turns out not to be seen. No
 // more than the pixels tell: a node that shows eight cannot need more than three.
 uint32_t ExactSource::levelsByNeed(const std::vector<Wish>& chosen) const {
-  if (to_.options.freshRanking || !to_.options.descendants || chosen.empty()) return 0;
+  if (!tripWorthGuessing() || !to_.options.descendants || chosen.empty()) return 0;
   uint64_t pixels = 0;
   for (const Wish& wish : chosen) pixels += wish.pixels;
   const auto count = static_cast<double>(chosen.size());

@@ -65,6 +65,7 @@ class ExactSource final : public RecordSource {
   void requestAhead();
   [[nodiscard]] std::vector<Wish> takeBatch(std::vector<Wish>& from, size_t& next) const;
   [[nodiscard]] Expansion expansionFor(const std::vector<Wish>& chosen) const;
+  [[nodiscard]] bool tripWorthGuessing() const;
   [[nodiscard]] double firstRoom() const;
   [[nodiscard]] std::optional<uint8_t> significanceAtFirst(const std::vector<Wish>& chosen) const;
   [[nodiscard]] uint64_t likelyRecords(const RecordRequest& request) const;

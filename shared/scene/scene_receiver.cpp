@@ -8,11 +8,14 @@
 #include "shared/receiver/ranking.h"
 #include "shared/scene/likely_error.h"
 #include "shared/scene/mesh_placement.h"
+#include "shared/scene/seen_rim.h"
 
 namespace meshfront {
 namespace {
 
 constexpr size_t kBudgetOperations = 5'000;  // collapses and splits at a time: some milliseconds
+// The rim may come along when no more than one of so many pixels is still open.
+constexpr uint64_t kOpenBesideRim = 8;
 
 // The worst of two states is the scene's.
 int rankOf(ReceiverState state) {
@@ -158,35 +161,69 @@ void SceneReceiver::rank(const SceneCounts& counts) {
     rankAhead(counts);
     return;
   }
-  if (hasBudgets()) planBudgets(counts);
-  uint64_t all = 0;
-  uint64_t open = 0;
-  for (size_t i = 0; i < meshes_.size() && i < counts.meshes.size(); ++i) {
-    MeshOfScene& mesh = meshes_[i];
-    const SelectivelyRefinedMesh* front = mesh.receiver->mesh();
-    if (front == nullptr) continue;
-    bringUpToDate(mesh, counts.meshes[i]);
-    liftOf(front->positions(), mesh.pixels, mesh.receiver->metadata()->quantization,
-           mesh.placed.worldFromMesh, counts.camera, options_.foveation, spot_, mesh.lift);
-    if (ranksByLikelyError()) {
-      const Quantization& grid = mesh.receiver->metadata()->quantization;
-      const double halfHeight = std::tan(counts.camera.verticalFov / 2);
-      liftByLikelyError(*front, mesh.pixels, onGrid(counts.camera.eye, mesh.placed, grid),
-                        counts.picture.height / (2 * halfHeight), mesh.lift);
-    }
-    for (VertexSlot slot = 0; slot < mesh.pixels.size(); ++slot) {
-      all += mesh.pixels[slot];
-      const NodeIndex node = front->nodeAt(slot);
-      if (node != kNone && !front->isLeaf(node)) open += mesh.pixels[slot];
-    }
+  SeenPixels seen = takePixels(counts);
+  const bool withRim = addRims(seen);
+  if (hasBudgets()) {
+    planBudgets(counts);
+    seen = takePixels(counts);  // the budgets may have changed the meshes
+    if (withRim) (void)addRims(seen);
   }
-  finalShare_ = all == 0 ? 0 : 1 - static_cast<double>(open) / static_cast<double>(all);
+  finalShare_ =
+      seen.all == 0 ? 0 : 1 - static_cast<double>(seen.open) / static_cast<double>(seen.all);
+  liftAll(counts);
   compareSizes(counts.camera);
   shareOut();
   for (MeshOfScene& mesh : meshes_) {
     if (mesh.receiver->mesh() == nullptr) continue;
     if (hasBudgets()) mesh.receiver->setSplitAllowance(budget_.splitsAllowed());
     mesh.receiver->rank(mesh.pixels, {mesh.lift, mesh.levelsBehind, mesh.share, hasBudgets()});
+  }
+}
+
+// Brings all counts up to date.
+SeenPixels SceneReceiver::takePixels(const SceneCounts& counts) {
+  SeenPixels sum;
+  for (size_t i = 0; i < meshes_.size() && i < counts.meshes.size(); ++i) {
+    MeshOfScene& mesh = meshes_[i];
+    if (mesh.receiver->mesh() == nullptr) continue;
+    bringUpToDate(mesh, counts.meshes[i]);
+    const SeenPixels seen = seenPixels(*mesh.receiver->mesh(), mesh.pixels);
+    sum.all += seen.all;
+    sum.open += seen.open;
+  }
+  return sum;
+}
+
+// A pixel for each vertex of the rims, as soon as that takes nothing from what is seen: when all of
+// that is split, or when the little that is left goes into one request together with the rims, so
+// that their generations take no round trips of their own.
+bool SceneReceiver::addRims(const SeenPixels& seen) {
+  if (!options_.rim || seen.open * kOpenBesideRim > seen.all) return false;
+  size_t nodes = seen.openNodes;
+  for (MeshOfScene& mesh : meshes_) {
+    mesh.rim.clear();
+    if (const auto* front = mesh.receiver->mesh()) mesh.rim = openRim(*front, mesh.pixels);
+    nodes += mesh.rim.size();
+  }
+  if (seen.open > 0 && nodes > batchNow()) return false;
+  // Nobody's room is taken for it.
+  if (hasBudgets() && !budgeted_.empty() && budget_.splitsAllowed() < nodes) return false;
+  for (MeshOfScene& mesh : meshes_)
+    for (const VertexSlot slot : mesh.rim) mesh.pixels[slot] = 1;
+  return nodes > seen.openNodes;
+}
+
+void SceneReceiver::liftAll(const SceneCounts& counts) {
+  for (MeshOfScene& mesh : meshes_) {
+    const SelectivelyRefinedMesh* front = mesh.receiver->mesh();
+    if (front == nullptr) continue;
+    const Quantization& grid = mesh.receiver->metadata()->quantization;
+    liftOf(front->positions(), mesh.pixels, grid, mesh.placed.worldFromMesh, counts.camera,
+           options_.foveation, spot_, mesh.lift);
+    if (!ranksByLikelyError()) continue;
+    const double halfHeight = std::tan(counts.camera.verticalFov / 2);
+    liftByLikelyError(*front, mesh.pixels, onGrid(counts.camera.eye, mesh.placed, grid),
+                      counts.picture.height / (2 * halfHeight), mesh.lift);
   }
 }
 
@@ -205,20 +242,16 @@ void SceneReceiver::planBudgets(const SceneCounts& counts) {
   }
   std::vector<MeshInView> views;
   budgeted_.clear();
-  uint64_t splits = 0;
   uint64_t underWay = 0;
   for (size_t i = 0; i < meshes_.size() && i < counts.meshes.size(); ++i) {
     SelectivelyRefinedMesh* front = meshes_[i].receiver->meshToRefine();
     if (front == nullptr) continue;
-    views.push_back({front, counts.meshes[i].pixels, counts.meshes[i].changeCount});
+    views.push_back({front, meshes_[i].pixels, counts.meshes[i].changeCount});
     budgeted_.push_back(i);
-    splits += front->splitsApplied();
     underWay += meshes_[i].receiver->requestsUnderWay();
   }
   // Room for what is under way and for what this ranking will ask for.
-  const size_t batch =
-      options_.receiver.batch > 0 ? options_.receiver.batch : adaptiveBatch(splits);
-  budget_.look(views, view_, batch * (underWay + 2 * views.size()));
+  budget_.look(views, view_, batchNow() * (underWay + 2 * views.size()));
   workBudgets();
 }
 
@@ -277,6 +310,15 @@ void SceneReceiver::compareSizes(const Camera& camera) {
     mesh.levelsBehind = levelsBehind(mesh.apparentSize, largest) + room;
 }
 
+// Records of a request.
+size_t SceneReceiver::batchNow() const {
+  if (options_.receiver.batch > 0) return options_.receiver.batch;
+  uint64_t splits = 0;
+  for (const MeshOfScene& mesh : meshes_)
+    if (const auto* front = mesh.receiver->mesh()) splits += front->splitsApplied();
+  return adaptiveBatch(splits);
+}
+
 // How many of the records that the next requests ask for are each mesh's: those of its vertices
 // that are among the first of all.
 void SceneReceiver::shareOut() {
@@ -285,13 +327,11 @@ void SceneReceiver::shareOut() {
     return;
   }
   std::vector<Candidate> all;  // slot: the mesh
-  uint64_t splits = 0;
   for (size_t i = 0; i < meshes_.size(); ++i) {
     MeshOfScene& mesh = meshes_[i];
     mesh.share = 0;
     const SelectivelyRefinedMesh* front = mesh.receiver->mesh();
     if (front == nullptr) continue;
-    splits += front->splitsApplied();
     for (Candidate& candidate :
          visibleCandidates(*front, mesh.pixels, {}, {mesh.lift, mesh.levelsBehind})) {
       if (front->hasRecord(candidate.node)) continue;
@@ -299,9 +339,7 @@ void SceneReceiver::shareOut() {
       all.push_back(candidate);
     }
   }
-  const uint32_t batch =
-      options_.receiver.batch > 0 ? options_.receiver.batch : adaptiveBatch(splits);
-  keepFirst(all, size_t{batch} * windowOf(options_.receiver), options_.receiver.order);
+  keepFirst(all, batchNow() * windowOf(options_.receiver), options_.receiver.order);
   for (const Candidate& candidate : all) ++meshes_[candidate.slot].share;
 }
 

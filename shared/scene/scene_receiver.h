@@ -30,6 +30,7 @@
 #include "shared/scene/scene_counts.h"
 #include "shared/scene/scene_file.h"
 #include "shared/scene/scene_status.h"
+#include "shared/scene/seen_rim.h"
 #include "shared/scene/view_lift.h"
 
 namespace meshfront {
@@ -38,6 +39,9 @@ struct SceneOptions {
   ReceiverOptions receiver;  // of each mesh; its onArrival is called for all
   Foveation foveation{.on = false};
   FrontLimits limits;  // of all meshes; without any nothing is collapsed
+  // When all that is seen is split, the rim is (seen_rim.h), so far as the limits leave room: a
+  // settled view then looks as the published mesh does. False: what is seen is all.
+  bool rim = true;
 };
 
 class SceneReceiver {
@@ -87,6 +91,7 @@ class SceneReceiver {
     std::unique_ptr<Receiver> receiver;
     AutomaticResume resume;
     std::vector<uint32_t> pixels;  // of the last counts, brought up to the mesh as it is
+    std::vector<VertexSlot> rim;   // that addRims() found
     std::vector<uint8_t> lift;     // levels, by slot
     double apparentSize = 0;       // as compareSizes() found it
     unsigned levelsBehind = 0;
@@ -96,6 +101,10 @@ class SceneReceiver {
     size_t share = 0;            // of the next request's records
   };
   void bringUpToDate(MeshOfScene& mesh, const MeshCounts& counts);
+  SeenPixels takePixels(const SceneCounts& counts);
+  bool addRims(const SeenPixels& seen);
+  [[nodiscard]] size_t batchNow() const;
+  void liftAll(const SceneCounts& counts);
   void rankAhead(const SceneCounts& counts);
   void compareSizes(const Camera& camera);
   [[nodiscard]] bool ranksByLikelyError() const {

@@ -196,13 +196,13 @@ TEST_F(RecordServiceTest, ObjectsToContent) {
 }
 
 TEST_F(RecordServiceTest, LeavesOutALocationThatIsTooLong) {
-  const SyntheticMesh large = makeSyntheticMesh({.name = "large", .roots = 3000, .maxDepth = 6});
+  const SyntheticMesh large = makeSyntheticMesh({.name = "large", .roots = 3000, .maxDepth = 4});
   ASSERT_TRUE(writePack(folder_ / "b.pack", large.content));
   const auto catalogue =
       PackCatalogue::read(folder_.path(), std::make_shared<MemoryBudget>(size_t{1} << 24));
   ASSERT_TRUE(catalogue);
   RecordService service(**catalogue, metrics_, {});
-  const std::vector<NodeId> wanted = large.nodesAtDepth(5);
+  const std::vector<NodeId> wanted = large.nodesAtDepth(3);
   const auto bitstring = *encodeTreeBitstring(wanted);
   ASSERT_GT(bitstring.size(), 6000U);
   HttpRequest query;

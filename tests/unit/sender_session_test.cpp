@@ -207,13 +207,13 @@ TEST_F(SenderSessionTest, SurvivesDamagedBytes) {
     options.criteria = true;
     SenderSession session(model_, options);
     session.look(view("whole"));
-    const std::vector<uint8_t> message = session.next(150).message;
+    const std::vector<uint8_t> message = session.next(40).message;
     for (size_t length = 0; length + 1 < message.size(); ++length) {
       SelectivelyRefinedMesh mesh = clientMesh();
       ClientSession client;
       EXPECT_FALSE(applySplitMessage(std::span(message).first(length), mesh, client));
     }
-    for (int i = 0; i < 300; ++i) {
+    for (int i = 0; i < 150; ++i) {
       std::vector<uint8_t> damaged = message;
       for (int flips = 0; flips < 4; ++flips)
         damaged[random() % damaged.size()] ^= static_cast<uint8_t>(1U << random() % 8);

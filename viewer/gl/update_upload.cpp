@@ -20,8 +20,8 @@ constexpr size_t kAlignment = 256;
 constexpr size_t kAlignedSlots = kAlignment / sizeof(uint32_t);
 // Kept from one update to the next.
 constexpr size_t kStagingKept = size_t{32} << 20;
-constexpr size_t kGroupSize = 64;
-constexpr size_t kMostGroups = 65'535;
+constexpr size_t kScatteredAtOnce = 64;
+constexpr size_t kMostScatterGroups = 65'535;
 
 constexpr char kScatterShader[] = R"(#version 450 core
 layout(local_size_x = 64) in;
@@ -188,7 +188,7 @@ void UpdateUpload::scatter(const Records& records, const SlotBuffer& into) const
   const size_t recordBytes = std::max({records.stride, slotBytes, sizeof(uint32_t)});
   // As much at a time as a shader may see of the staging buffer, and of the target.
   const size_t mostRecords =
-      std::min(window_ / recordBytes - kAlignedSlots, kMostGroups * kGroupSize);
+      std::min(window_ / recordBytes - kAlignedSlots, kMostScatterGroups * kScatteredAtOnce);
   const size_t mostSlots = window_ / slotBytes;
   const auto bind = [](GLuint binding, GLuint buffer, size_t from, size_t size) {
     glBindBufferRange(GL_SHADER_STORAGE_BUFFER, binding, buffer, static_cast<GLintptr>(from),
@@ -217,7 +217,8 @@ void UpdateUpload::scatter(const Records& records, const SlotBuffer& into) const
     glUniform1ui(4, static_cast<GLuint>(records.stride / sizeof(uint32_t)));
     glUniform1ui(5, static_cast<GLuint>(records.first / sizeof(uint32_t)));
     glUniform1ui(6, records.fill);
-    glDispatchCompute(static_cast<GLuint>((end - i + kGroupSize - 1) / kGroupSize), 1, 1);
+    glDispatchCompute(static_cast<GLuint>((end - i + kScatteredAtOnce - 1) / kScatteredAtOnce), 1,
+                      1);
     i = end;
   }
 }

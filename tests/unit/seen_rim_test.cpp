@@ -1,0 +1,156 @@
+// What touches the seen is split, too, once all that is seen is.
+#include "shared/scene/seen_rim.h"
+
+#include <gtest/gtest.h>
+
+#include "shared/scene/scene_receiver.h"
+#include "tests/unit/receiver_fixture.h"
+
+namespace meshfront {
+namespace {
+
+class SeenRimTest : public ReceiverTest {
+ protected:
+  static std::vector<SceneMesh> scene() {
+    SceneMesh mesh;
+    mesh.url = url();
+    mesh.name = "torus";
+    mesh.worldFromMesh = glm::dmat4(1.0);
+    return {mesh};
+  }
+
+  static int middle(const SelectivelyRefinedMesh& mesh) {
+    int least = INT_MAX;
+    int most = INT_MIN;
+    for (const GridPosition& position : mesh.positions()) {
+      least = std::min(least, position[0]);
+      most = std::max(most, position[0]);
+    }
+    return least + (most - least) / 2;
+  }
+
+  // Of the torus one half is seen: what lies beyond its middle in x.
+  static SceneCounts halfSeen(const SceneReceiver& scene, uint32_t pixels = 1) {
+    SceneCounts counts;
+    counts.camera.eye = {0, 0, 1e6};
+    counts.picture = {100, 100};
+    MeshCounts& half = counts.meshes.emplace_back();
+    const SelectivelyRefinedMesh& mesh = *scene.receiver(0).mesh();
+    half.changeCount = mesh.changeCount();
+    half.pixels.resize(mesh.vertexSlotCount());
+    for (VertexSlot slot = 0; slot < mesh.vertexSlotCount(); ++slot)
+      half.pixels[slot] = mesh.positions()[slot][0] > middle(mesh) ? pixels : 0;
+    return counts;
+  }
+
+  void lookAround(SceneReceiver& scene) {
+    for (int i = 0; i < 10'000; ++i) {
+      if (!transport_.held.empty()) transport_.answer(service_);
+      scene.advance();
+      if (scene.receiver(0).mesh() == nullptr) continue;
+      if (scene.wantsRanking()) scene.rank(halfSeen(scene));
+      if (!scene.isAtWork() && transport_.held.empty()) break;
+    }
+  }
+
+  void settle(SceneReceiver& scene) {
+    lookAround(scene);
+    scene.rank(halfSeen(scene));
+    EXPECT_TRUE(transport_.held.empty());
+    EXPECT_EQ(scene.status().state, ReceiverState::settled);
+    const SelectivelyRefinedMesh& mesh = *scene.receiver(0).mesh();
+    EXPECT_EQ(seenPixels(mesh, halfSeen(scene).meshes[0].pixels).open, 0U);
+  }
+
+  static size_t openAtTheRim(const SceneReceiver& scene) {
+    return openRim(*scene.receiver(0).mesh(), halfSeen(scene).meshes[0].pixels).size();
+  }
+};
+
+TEST_F(SeenRimTest, IsSplitOnceAllThatIsSeenIs) {
+  SceneOptions options;
+  options.receiver.goal = Goal::settled;
+  options.rim = false;
+  SceneReceiver without(scene(), options, transport_);
+  settle(without);
+  EXPECT_GT(openAtTheRim(without), 10U);
+  options.rim = true;
+  SceneReceiver with(scene(), options, transport_);
+  settle(with);
+  EXPECT_EQ(openAtTheRim(with), 0U);
+  const uint64_t splits = with.receiver(0).mesh()->splitsApplied();
+  EXPECT_GT(splits, without.receiver(0).mesh()->splitsApplied());
+  EXPECT_LT(splits, service_.splitCount());
+  EXPECT_EQ(with.status().finalShare, 1);
+}
+
+TEST_F(SeenRimTest, WaitsForWhatIsSeen) {
+  SceneOptions options;
+  options.receiver.batch = 10'000;
+  options.receiver.window = 1;
+  SceneReceiver scene(this->scene(), options, transport_);
+  for (int i = 0; i < 20 && !transport_.held.empty(); ++i) {
+    transport_.answer(service_);
+    scene.advance();
+  }
+  const SceneCounts counts = halfSeen(scene, 100);
+  scene.rank(counts);
+  ASSERT_EQ(transport_.held.size(), 1U);
+  const SelectivelyRefinedMesh& mesh = *scene.receiver(0).mesh();
+  ASSERT_GT(openRim(mesh, counts.meshes[0].pixels).size(), 0U);
+  for (const NodeId& id : requested(transport_.held[0]))
+    EXPECT_GT(counts.meshes[0].pixels[mesh.slot(*mesh.find(id))], 0U);
+}
+
+TEST_F(SeenRimTest, TakesNoRoomThatABudgetDoesNotHave) {
+  SceneOptions options;
+  options.receiver.goal = Goal::settled;
+  options.rim = false;
+  SceneReceiver unlimited(scene(), options, transport_);
+  settle(unlimited);
+  // Too few triangles for what is seen: all goes on as if there were no rim.
+  options.limits.triangles = unlimited.receiver(0).mesh()->drawnTriangleCount() * 3 / 4;
+  SceneReceiver seenAlone(scene(), options, transport_);
+  lookAround(seenAlone);
+  options.rim = true;
+  SceneReceiver tight(scene(), options, transport_);
+  lookAround(tight);
+  EXPECT_GT(openAtTheRim(tight), 0U);
+  EXPECT_EQ(tight.status().splits, seenAlone.status().splits);
+  EXPECT_EQ(tight.status().statistics.records, seenAlone.status().statistics.records);
+  EXPECT_EQ(tight.status().collapses, seenAlone.status().collapses);
+  // Enough for the rim, too; a view that comes back needs nothing then.
+  options.limits.triangles = 2 * service_.mesh().triangles.size();
+  SceneReceiver roomy(scene(), options, transport_);
+  settle(roomy);
+  EXPECT_EQ(openAtTheRim(roomy), 0U);
+  const uint64_t requests = roomy.status().statistics.requests;
+  settle(roomy);
+  EXPECT_EQ(roomy.status().statistics.requests, requests);
+}
+
+// Between the two: what is seen has room, the rim not all. It comes to rest.
+TEST_F(SeenRimTest, ComesToRestUnderEveryBudget) {
+  for (const double share : {0.4, 0.5, 0.55, 0.6, 0.65, 0.7}) {
+    SceneOptions options;
+    options.receiver.goal = Goal::settled;
+    options.limits.triangles =
+        static_cast<uint64_t>(share * static_cast<double>(service_.mesh().triangles.size()));
+    options.limits.unneededShare = 0.25;
+    SceneReceiver scene(this->scene(), options, transport_);
+    lookAround(scene);
+    const uint64_t collapses = scene.status().collapses;
+    const uint64_t requests = scene.status().statistics.requests;
+    for (int i = 0; i < 50; ++i) {
+      scene.rank(halfSeen(scene));
+      scene.advance();
+    }
+    EXPECT_TRUE(transport_.held.empty()) << share;
+    EXPECT_EQ(scene.status().collapses, collapses) << share;
+    EXPECT_EQ(scene.status().statistics.requests, requests) << share;
+    EXPECT_LE(scene.status().triangles, options.limits.triangles) << share;
+  }
+}
+
+}  // namespace
+}  // namespace meshfront
