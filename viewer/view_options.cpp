@@ -101,7 +101,7 @@ Result<uint64_t> parseOctets(std::string_view text) {
 
 void addRefinementOptions(CLI::App& app, ViewOptions& options, OctetTexts& texts) {
   app.add_flag("!--no-rim", options.rim,
-               "do not split what covers no pixel but has an edge to something that does: fewer "
+               "do not split what covers no pixel but has an edge to something seen: fewer "
                "bytes, and a few pixels along silhouettes that are not the published mesh's");
   app.add_option("--triangle-budget", options.triangleBudget,
                  "most triangles drawn at a time; what the view does not need is collapsed and "

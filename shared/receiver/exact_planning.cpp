@@ -19,7 +19,7 @@ constexpr double kProbingProducts = 4;     // what the link may hold beyond what
 // what TCP sends before it waits for acknowledgements (RFC 6928).
 constexpr double kLikelyBytesPerSecond = 250'000;
 constexpr double kFirstFlightBytes = 10 * 1'448;
-constexpr double kLikelyRecordBytes = 4;  // no answer has told yet
+constexpr double kLikelyRecordBytes = 5.5;  // no answer has told yet
 constexpr std::chrono::milliseconds kTripWorthGuessing{10};
 
 }  // namespace
@@ -33,7 +33,8 @@ double ExactSource::firstRoom() const {
   return std::max(kFirstRecords, bytes / kLikelyRecordBytes);
 }
 
-std::optional<uint8_t> ExactSource::significanceAtFirst(const std::vector<Wish>& chosen) const {
+// Takes out of `chosen` what is better left to the second request.
+std::optional<uint8_t> ExactSource::significanceAtFirst(std::vector<Wish>& chosen) const {
   if (!to_.options.descendants || mesh_.splitsApplied() > 0 || to_.allowance.limited())
     return std::nullopt;
   const auto count = static_cast<double>(chosen.size());
@@ -45,7 +46,12 @@ std::optional<uint8_t> ExactSource::significanceAtFirst(const std::vector<Wish>&
     pixels += wish.pixels;
     levels.push_back(static_cast<uint8_t>(mesh_.level(wish.node)));
   }
-  return firstSignificance(levels, pixels, room, tables_->maxLevel);
+  const auto forAll = firstSignificance(levels, pixels, room, tables_->maxLevel);
+  if (!forAll || !tripWorthGuessing()) return forAll;
+  const size_t finer = nodesOneLevelFiner(levels, *forAll, room, tables_->maxLevel);
+  if (2 * finer < levels.size()) return forAll;
+  chosen.resize(finer);
+  return static_cast<uint8_t>(*forAll + 1);
 }
 
 uint64_t ExactSource::likelyRecords(const RecordRequest& request) const {

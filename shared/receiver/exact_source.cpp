@@ -130,7 +130,7 @@ void ExactSource::sendBatch(std::vector<Wish> chosen, bool ahead) {
   send(flight, false);
 }
 
-Expansion ExactSource::expansionFor(const std::vector<Wish>& chosen) const {
+Expansion ExactSource::expansionFor(std::vector<Wish>& chosen) const {
   Expansion expansion;
   if (expansionRefused_ || budget_.limited()) return expansion;
   // An answer of unknown length must not run into the allowance.

@@ -64,10 +64,10 @@ class ExactSource final : public RecordSource {
   void send(Flight& flight, bool bypassCaches);
   void requestAhead();
   [[nodiscard]] std::vector<Wish> takeBatch(std::vector<Wish>& from, size_t& next) const;
-  [[nodiscard]] Expansion expansionFor(const std::vector<Wish>& chosen) const;
+  [[nodiscard]] Expansion expansionFor(std::vector<Wish>& chosen) const;
   [[nodiscard]] bool tripWorthGuessing() const;
   [[nodiscard]] double firstRoom() const;
-  [[nodiscard]] std::optional<uint8_t> significanceAtFirst(const std::vector<Wish>& chosen) const;
+  [[nodiscard]] std::optional<uint8_t> significanceAtFirst(std::vector<Wish>& chosen) const;
   [[nodiscard]] uint64_t likelyRecords(const RecordRequest& request) const;
   [[nodiscard]] uint32_t levelsByNeed(const std::vector<Wish>& chosen) const;
   void refillFromRest();

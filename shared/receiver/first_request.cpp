@@ -19,4 +19,17 @@ std::optional<uint8_t> firstSignificance(std::span<const uint8_t> levels, uint64
   return best;
 }
 
+size_t nodesOneLevelFiner(std::span<const uint8_t> levels, uint8_t most, double room,
+                          unsigned maxLevel) {
+  if (most >= maxLevel) return 0;
+  double records = 0;
+  size_t nodes = 0;
+  while (nodes < levels.size()) {
+    records += recordsUpTo(most + 1U, levels[nodes]);
+    if (records > room) break;
+    ++nodes;
+  }
+  return nodes;
+}
+
 }  // namespace meshfront

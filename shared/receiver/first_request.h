@@ -4,6 +4,7 @@
 // each generation. `?significance=L` names it (Expansion).
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -25,5 +26,12 @@ inline constexpr double kFirstRecords = 400;
 [[nodiscard]] std::optional<uint8_t> firstSignificance(std::span<const uint8_t> levels,
                                                        uint64_t pixels, double room,
                                                        unsigned maxLevel);
+
+// Levels are octaves, so that what firstSignificance() finds may use but half of the room. How many
+// of the nodes, from the first on, have room for the level after `most`: where a round trip counts,
+// most of the nodes one level finer serve better than all of them, and the rest comes with the
+// second request. 0 where there is no finer level.
+[[nodiscard]] size_t nodesOneLevelFiner(std::span<const uint8_t> levels, uint8_t most, double room,
+                                        unsigned maxLevel);
 
 }  // namespace meshfront

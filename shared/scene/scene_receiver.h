@@ -40,7 +40,7 @@ struct SceneOptions {
   Foveation foveation{.on = false};
   FrontLimits limits;  // of all meshes; without any nothing is collapsed
   // When all that is seen is split, the rim is (seen_rim.h), so far as the limits leave room: a
-  // settled view then looks as the published mesh does. False: what is seen is all.
+  // settled view then looks more like the published mesh, and needs nothing when it comes back.
   bool rim = true;
 };
 

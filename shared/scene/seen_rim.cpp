@@ -27,7 +27,7 @@ std::vector<VertexSlot> openRim(const SelectivelyRefinedMesh& mesh,
     bool touches = false;
     mesh.edges().forEachOutgoing(slot, [&](HalfEdge edge) {
       const VertexSlot neighbour = mesh.edges().destination(edge);
-      touches = touches || (neighbour < slots && pixels[neighbour] > 0);
+      touches = touches || (neighbour < slots && pixels[neighbour] >= kRimPixels);
     });
     if (touches) rim.push_back(slot);
   }

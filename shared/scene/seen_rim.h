@@ -1,9 +1,11 @@
-// The rim of what is seen: vertices that cover no pixel, but have an edge to one that does.
+// The rim of what is seen: vertices that cover no pixel, but have an edge to one that covers at
+// least kRimPixels.
 //
-// Triangles between a seen vertex and one behind the silhouette move when that one is split. So a
-// picture is that of the published mesh only when the rim is split, too; until then a few pixels
-// along silhouettes are another triangle's, and a part that is finer next time, because another
-// view has wanted it, shows vertices that were not seen before.
+// Triangles between a seen vertex and one behind the silhouette move when that one is split. Until
+// it is, a few pixels along silhouettes are not the published mesh's, and a part that is finer next
+// time, because another view has wanted it, shows vertices that were not seen before. What covers a
+// single pixel counts for nothing here: where triangles are smaller than pixels, as on a terrain
+// seen whole, each split lays bare other vertices, until much is split that no picture shows.
 #pragma once
 
 #include <cstddef>
@@ -14,6 +16,8 @@
 #include "shared/refinement/selectively_refined_mesh.h"
 
 namespace meshfront {
+
+inline constexpr uint32_t kRimPixels = 2;
 
 // What of a picture's pixels is of vertices that can still be split: active nodes that are no
 // leaves.

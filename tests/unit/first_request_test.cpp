@@ -36,5 +36,15 @@ TEST(FirstRequest, CountsNodesOfSeveralLevels) {
   EXPECT_EQ(firstSignificance(std::vector<uint8_t>{0, 3, 3}, kManyPixels, 40, 10), 4);  // 31+3+3
 }
 
+TEST(FirstRequest, CountsTheNodesThatHaveRoomOneLevelFiner) {
+  const std::vector<uint8_t> levels(50, 0);
+  EXPECT_EQ(nodesOneLevelFiner(levels, 2, 400, 10), 26U);  // 15 records each up to level 3
+  EXPECT_EQ(nodesOneLevelFiner(levels, 2, 750, 10), 50U);
+  EXPECT_EQ(nodesOneLevelFiner(levels, 2, 14, 10), 0U);
+  EXPECT_EQ(nodesOneLevelFiner(levels, 2, 400, 2), 0U);  // there is no finer one
+  EXPECT_EQ(nodesOneLevelFiner(std::vector<uint8_t>{3, 0, 0}, 2, 17, 10), 2U);  // 1 + 15
+  EXPECT_EQ(nodesOneLevelFiner({}, 2, 400, 10), 0U);
+}
+
 }  // namespace
 }  // namespace meshfront

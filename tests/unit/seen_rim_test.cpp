@@ -30,7 +30,7 @@ class SeenRimTest : public ReceiverTest {
   }
 
   // Of the torus one half is seen: what lies beyond its middle in x.
-  static SceneCounts halfSeen(const SceneReceiver& scene, uint32_t pixels = 1) {
+  static SceneCounts halfSeen(const SceneReceiver& scene, uint32_t pixels = kRimPixels) {
     SceneCounts counts;
     counts.camera.eye = {0, 0, 1e6};
     counts.picture = {100, 100};
@@ -82,6 +82,20 @@ TEST_F(SeenRimTest, IsSplitOnceAllThatIsSeenIs) {
   EXPECT_GT(splits, without.receiver(0).mesh()->splitsApplied());
   EXPECT_LT(splits, service_.splitCount());
   EXPECT_EQ(with.status().finalShare, 1);
+}
+
+TEST_F(SeenRimTest, IsThatOfWhatCoversMoreThanAPixel) {
+  SceneOptions options;
+  options.receiver.goal = Goal::settled;
+  options.rim = false;
+  SceneReceiver seen(scene(), options, transport_);
+  settle(seen);
+  const SelectivelyRefinedMesh& mesh = *seen.receiver(0).mesh();
+  const auto rim = openRim(mesh, halfSeen(seen, 2).meshes[0].pixels);
+  EXPECT_GT(rim.size(), 10U);
+  EXPECT_EQ(openRim(mesh, halfSeen(seen, 1).meshes[0].pixels).size(), 0U);
+  for (const VertexSlot slot : rim)
+    EXPECT_EQ(halfSeen(seen).meshes[0].pixels[slot], 0U) << "seen, so not the rim";
 }
 
 TEST_F(SeenRimTest, WaitsForWhatIsSeen) {
