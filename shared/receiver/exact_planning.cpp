@@ -21,6 +21,7 @@ constexpr double kLikelyBytesPerSecond = 250'000;
 constexpr double kFirstFlightBytes = 10 * 1'448;
 constexpr double kLikelyRecordBytes = 5.5;  // no answer has told yet
 constexpr std::chrono::milliseconds kTripWorthGuessing{10};
+constexpr double kShownByFiner = 0.9;  // of what is seen: then the others may come a trip later
 
 }  // namespace
 
@@ -49,7 +50,9 @@ std::optional<uint8_t> ExactSource::significanceAtFirst(std::vector<Wish>& chose
   const auto forAll = firstSignificance(levels, pixels, room, tables_->maxLevel);
   if (!forAll || !tripWorthGuessing()) return forAll;
   const size_t finer = nodesOneLevelFiner(levels, *forAll, room, tables_->maxLevel);
-  if (2 * finer < levels.size()) return forAll;
+  uint64_t shown = 0;
+  for (size_t i = 0; i < finer; ++i) shown += chosen[i].pixels;
+  if (static_cast<double>(shown) < kShownByFiner * static_cast<double>(pixels)) return forAll;
   chosen.resize(finer);
   return static_cast<uint8_t>(*forAll + 1);
 }

@@ -29,7 +29,7 @@ inline constexpr double kFirstRecords = 400;
 
 // Levels are octaves, so that what firstSignificance() finds may use but half of the room. How many
 // of the nodes, from the first on, have room for the level after `most`: where a round trip counts,
-// most of the nodes one level finer serve better than all of them, and the rest comes with the
+// nearly all that is seen one level finer serves better than all of it, and the rest comes with the
 // second request. 0 where there is no finer level.
 [[nodiscard]] size_t nodesOneLevelFiner(std::span<const uint8_t> levels, uint8_t most, double room,
                                         unsigned maxLevel);

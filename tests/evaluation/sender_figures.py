@@ -136,8 +136,8 @@ def tell_walk(files, output, mesh):
         for direction in ("down", "up"):
             first, both = int(half[f"bytes_{direction}"]), int(end[f"bytes_{direction}"])
             goal = {"goal": 0, "goal_is": "at most"} if way == "ours" else {}
-            note = ("What pixels show of a part depends on how fine the rest is by now: a few vertices are seen the second time "
-                    "alone. Ours with HTTP headers." if way == "ours" else "A sender that decides is told each view, needed or not.")
+            note = ("What pixels show of a part depends on how fine the rest is by now; the rim of what is seen is split, too, so "
+                    "that it changes little. Ours with HTTP headers." if way == "ours" else "A sender that decides is told each view, needed or not.")
             files.figure(6, table=table, row=mesh, column=f"{way}, {direction}, first time", value=first, unit="", csv=source,
                          note=KIM + note)
             files.figure(6, table=table, row=mesh, column=f"{way}, {direction}, second time", value=both - first, unit="",

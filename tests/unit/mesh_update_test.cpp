@@ -104,7 +104,7 @@ void expectUpdatesTellAll(IndexedMesh plain, uint32_t seed) {
     EXPECT_EQ(update.changeCount, mesh.changeCount());
     shadow.apply(update);
     expectShadowIsWhole(shadow, mesh);
-    if (testing::Test::HasFatalFailure()) return;
+    if (::testing::Test::HasFatalFailure()) return;
   }
 }
 
