@@ -190,6 +190,7 @@ SeenPixels SceneReceiver::takePixels(const SceneCounts& counts) {
     const SeenPixels seen = seenPixels(*mesh.receiver->mesh(), mesh.pixels);
     sum.all += seen.all;
     sum.open += seen.open;
+    sum.openNodes += seen.openNodes;
   }
   return sum;
 }

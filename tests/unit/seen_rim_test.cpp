@@ -116,6 +116,40 @@ TEST_F(SeenRimTest, WaitsForWhatIsSeen) {
     EXPECT_GT(counts.meshes[0].pixels[mesh.slot(*mesh.find(id))], 0U);
 }
 
+// Towards the end a request holds what is left to be seen and the rim, if both fit.
+TEST_F(SeenRimTest, ComesAlongOnlyWithAllThatIsSeen) {
+  constexpr uint32_t kBatch = 60;
+  SceneOptions options;
+  options.receiver.goal = Goal::settled;
+  options.receiver.batch = kBatch;
+  options.receiver.window = 1;
+  SceneReceiver scene(this->scene(), options, transport_);
+  size_t mixed = 0;
+  size_t looks = 0;
+  for (int i = 0; i < 1'000 && scene.isAtWork(); ++i) {
+    if (!transport_.held.empty()) transport_.answer(service_);
+    scene.advance();
+    if (scene.receiver(0).mesh() == nullptr || !scene.wantsRanking()) continue;
+    const SceneCounts counts = halfSeen(scene);
+    scene.rank(counts);
+    if (transport_.held.empty()) continue;
+    const SelectivelyRefinedMesh& mesh = *scene.receiver(0).mesh();
+    const size_t open = seenPixels(mesh, counts.meshes[0].pixels).openNodes;
+    size_t seen = 0;
+    size_t rim = 0;
+    for (const NodeId& id : requested(transport_.held[0]))
+      ++(counts.meshes[0].pixels[mesh.slot(*mesh.find(id))] > 0 ? seen : rim);
+    if (rim > 0) {
+      EXPECT_EQ(seen, open) << "the rim in the place of what is seen";
+    }
+    mixed += rim > 0 && seen > 0 ? 1 : 0;
+    ++looks;
+  }
+  EXPECT_EQ(scene.status().state, ReceiverState::settled);
+  EXPECT_GT(looks, 5U);
+  EXPECT_GT(mixed, 0U);
+}
+
 TEST_F(SeenRimTest, TakesNoRoomThatABudgetDoesNotHave) {
   SceneOptions options;
   options.receiver.goal = Goal::settled;
