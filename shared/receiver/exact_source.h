@@ -64,6 +64,8 @@ class ExactSource final : public RecordSource {
   void send(Flight& flight, bool bypassCaches);
   void requestAhead();
   [[nodiscard]] std::vector<Wish> takeBatch(std::vector<Wish>& from, size_t& next) const;
+  // Of the first request it also takes nodes out of `chosen`: the next ranking wishes for them
+  // again.
   [[nodiscard]] Expansion expansionFor(std::vector<Wish>& chosen) const;
   [[nodiscard]] bool tripWorthGuessing() const;
   [[nodiscard]] double firstRoom() const;

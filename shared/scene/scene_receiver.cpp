@@ -164,9 +164,12 @@ void SceneReceiver::rank(const SceneCounts& counts) {
   SeenPixels seen = takePixels(counts);
   const bool withRim = addRims(seen);
   if (hasBudgets()) {
+    const uint64_t before = changeCount();
     planBudgets(counts);
-    seen = takePixels(counts);  // the budgets may have changed the meshes
-    if (withRim) (void)addRims(seen);
+    if (changeCount() != before) {
+      seen = takePixels(counts);
+      if (withRim) (void)addRims(seen);
+    }
   }
   finalShare_ =
       seen.all == 0 ? 0 : 1 - static_cast<double>(seen.open) / static_cast<double>(seen.all);

@@ -191,8 +191,7 @@ TEST_F(SceneTest, TheLiftedComeFirst) {
 // Does what a drawing thread does, with estimated pixels.
 class Onlooker {
  public:
-  Onlooker(RefinementThread& thread, const MeshService& service, std::vector<SceneMesh> meshes)
-      : thread_(thread), meshes_(std::move(meshes)), fronts_(meshes_.size()), service_(service) {}
+  Onlooker(RefinementThread& thread, size_t meshes) : thread_(thread), fronts_(meshes) {}
 
   // Until the state is there; the last status.
   SceneStatus lookUntil(ReceiverState state) {
@@ -249,16 +248,14 @@ class Onlooker {
   }
 
   RefinementThread& thread_;
-  std::vector<SceneMesh> meshes_;
   std::vector<Front> fronts_;
-  const MeshService& service_;
 };
 
 TEST_F(SceneTest, AThreadRefinesToTheEnd) {
   ThreadedService transport(service_);
   std::atomic<int> woken = 0;
   RefinementThread thread(placed({1, 1}), {}, transport, [&woken] { ++woken; });
-  Onlooker onlooker(thread, service_, placed({1, 1}));
+  Onlooker onlooker(thread, 2);
   const SceneStatus status = onlooker.lookUntil(ReceiverState::complete);
   EXPECT_EQ(status.splits, 2 * service_.splitCount());
   EXPECT_GT(woken, 2);
@@ -284,7 +281,7 @@ TEST_F(SceneTest, AThreadTakesUpAgainWhenTheServerIsBack) {
   ThreadedService transport(service_);
   transport.setAway(true);
   RefinementThread thread(placed({1}), {}, transport, [] {});
-  Onlooker onlooker(thread, service_, placed({1}));
+  Onlooker onlooker(thread, 1);
   const SceneStatus lost = onlooker.lookUntil(ReceiverState::degraded);
   EXPECT_NE(lost.reason.find("refused"), std::string::npos);
   ASSERT_TRUE(lost.secondsToResume || thread.status().secondsToResume);
@@ -296,7 +293,7 @@ TEST_F(SceneTest, AThreadEndsAtAnyTime) {
   ThreadedService transport(service_);
   for (int i = 0; i < 20; ++i) {
     RefinementThread thread(placed({1, 1}), {}, transport, [] {});
-    Onlooker onlooker(thread, service_, placed({1, 1}));
+    Onlooker onlooker(thread, 2);
     for (int j = 0; j < i; ++j) onlooker.look();
   }
 }
