@@ -58,6 +58,11 @@ glm::dvec3 onGrid(const glm::dvec3& world, const SceneMesh& mesh, const Quantiza
   return (point - glm::dvec3(grid.origin[0], grid.origin[1], grid.origin[2])) / grid.step;
 }
 
+// Of a length seen from as far away as it is long.
+double pixelsAtOne(const SceneCounts& counts) {
+  return counts.picture.height / (2 * std::tan(counts.camera.verticalFov / 2));
+}
+
 }  // namespace
 
 SceneReceiver::SceneReceiver(std::vector<SceneMesh> meshes, const SceneOptions& options,
@@ -162,13 +167,13 @@ void SceneReceiver::rank(const SceneCounts& counts) {
     return;
   }
   SeenPixels seen = takePixels(counts);
-  const bool withRim = addRims(seen);
+  const bool withRim = addRims(seen, counts);
   if (hasBudgets()) {
     const uint64_t before = changeCount();
     planBudgets(counts);
     if (changeCount() != before) {
       seen = takePixels(counts);
-      if (withRim) (void)addRims(seen);
+      if (withRim) (void)addRims(seen, counts);
     }
   }
   finalShare_ =
@@ -201,12 +206,16 @@ SeenPixels SceneReceiver::takePixels(const SceneCounts& counts) {
 // A pixel for each vertex of the rims, as soon as that takes nothing from what is seen: when all of
 // that is split, or when the little that is left goes into one request together with the rims, so
 // that their generations take no round trips of their own.
-bool SceneReceiver::addRims(const SeenPixels& seen) {
+bool SceneReceiver::addRims(const SeenPixels& seen, const SceneCounts& counts) {
   if (!options_.rim || seen.open * kOpenBesideRim > seen.all) return false;
   size_t nodes = seen.openNodes;
   for (MeshOfScene& mesh : meshes_) {
     mesh.rim.clear();
-    if (const auto* front = mesh.receiver->mesh()) mesh.rim = openRim(*front, mesh.pixels);
+    if (const auto* front = mesh.receiver->mesh())
+      mesh.rim =
+          openRim(*front, mesh.pixels,
+                  onGrid(counts.camera.eye, mesh.placed, mesh.receiver->metadata()->quantization),
+                  pixelsAtOne(counts));
     nodes += mesh.rim.size();
   }
   if (seen.open > 0 && nodes > batchNow()) return false;
@@ -225,9 +234,8 @@ void SceneReceiver::liftAll(const SceneCounts& counts) {
     liftOf(front->positions(), mesh.pixels, grid, mesh.placed.worldFromMesh, counts.camera,
            options_.foveation, spot_, mesh.lift);
     if (!ranksByLikelyError()) continue;
-    const double halfHeight = std::tan(counts.camera.verticalFov / 2);
     liftByLikelyError(*front, mesh.pixels, onGrid(counts.camera.eye, mesh.placed, grid),
-                      counts.picture.height / (2 * halfHeight), mesh.lift);
+                      pixelsAtOne(counts), mesh.lift);
   }
 }
 

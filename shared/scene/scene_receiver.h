@@ -102,7 +102,7 @@ class SceneReceiver {
   };
   void bringUpToDate(MeshOfScene& mesh, const MeshCounts& counts);
   SeenPixels takePixels(const SceneCounts& counts);
-  bool addRims(const SeenPixels& seen);
+  bool addRims(const SeenPixels& seen, const SceneCounts& counts);
   [[nodiscard]] size_t batchNow() const;
   void liftAll(const SceneCounts& counts);
   void rankAhead(const SceneCounts& counts);

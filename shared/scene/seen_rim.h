@@ -1,15 +1,17 @@
-// The rim of what is seen: vertices that cover no pixel, but have an edge to one that covers at
-// least kRimPixels.
+// The rim of what is seen: vertices that cover no pixel, but have an edge to one that does, long
+// enough to show.
 //
 // Triangles between a seen vertex and one behind the silhouette move when that one is split. Until
 // it is, a few pixels along silhouettes are not the published mesh's, and a part that is finer next
-// time, because another view has wanted it, shows vertices that were not seen before. What covers a
-// single pixel counts for nothing here: where triangles are smaller than pixels, as on a terrain
-// seen whole, each split lays bare other vertices, until much is split that no picture shows.
+// time, because another view has wanted it, shows vertices that were not seen before. Edges shorter
+// than kRimEdgePixels count for nothing here: where triangles are smaller than pixels, as on a
+// terrain seen whole, each split lays bare other vertices, until much is split that no picture
+// shows.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
+#include <glm/vec3.hpp>
 #include <span>
 #include <vector>
 
@@ -17,7 +19,7 @@
 
 namespace meshfront {
 
-inline constexpr uint32_t kRimPixels = 2;
+inline constexpr double kRimEdgePixels = 2;
 
 // What of a picture's pixels is of vertices that can still be split: active nodes that are no
 // leaves.
@@ -30,8 +32,10 @@ struct SeenPixels {
 [[nodiscard]] SeenPixels seenPixels(const SelectivelyRefinedMesh& mesh,
                                     std::span<const uint32_t> pixels);
 
-// The rim's vertices that can still be split. O(edges).
+// The rim's vertices that can still be split. `eye`, `pixelsAtOne`: as for liftByLikelyError()
+// (likely_error.h); an edge is as long as it would be seen from the side. O(edges).
 [[nodiscard]] std::vector<VertexSlot> openRim(const SelectivelyRefinedMesh& mesh,
-                                              std::span<const uint32_t> pixels);
+                                              std::span<const uint32_t> pixels,
+                                              const glm::dvec3& eye, double pixelsAtOne);
 
 }  // namespace meshfront

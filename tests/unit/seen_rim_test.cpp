@@ -3,6 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <climits>
+#include <cmath>
+#include <glm/geometric.hpp>
+
 #include "shared/scene/scene_receiver.h"
 #include "tests/unit/receiver_fixture.h"
 
@@ -36,11 +41,12 @@ class SeenRimTest : public ReceiverTest {
     return least + (most - least) / 2;
   }
 
-  // Of the torus one half is seen: what lies beyond its middle in x.
-  static SceneCounts halfSeen(const SceneReceiver& scene, uint32_t pixels = kRimPixels) {
+  // Of the torus one half is seen: what lies beyond its middle in x. Its edges are some ten pixels
+  // long.
+  static SceneCounts halfSeen(const SceneReceiver& scene, uint32_t pixels = 1) {
     SceneCounts counts;
-    counts.camera.eye = {0, 0, 1e6};
-    counts.picture = {100, 100};
+    counts.camera.eye = kEye;
+    counts.picture = {1'000, 1'000};
     MeshCounts& half = counts.meshes.emplace_back();
     const SelectivelyRefinedMesh& mesh = *scene.receiver(0).mesh();
     half.changeCount = mesh.changeCount();
@@ -69,9 +75,17 @@ class SeenRimTest : public ReceiverTest {
     EXPECT_EQ(seenPixels(mesh, halfSeen(scene).meshes[0].pixels).open, 0U);
   }
 
-  static size_t openAtTheRim(const SceneReceiver& scene) {
-    return openRim(*scene.receiver(0).mesh(), halfSeen(scene).meshes[0].pixels).size();
+  static std::vector<VertexSlot> rimOf(const SceneReceiver& scene, double pixelsAtOne) {
+    return openRim(*scene.receiver(0).mesh(), halfSeen(scene).meshes[0].pixels, kEye, pixelsAtOne);
   }
+  static size_t openAtTheRim(const SceneReceiver& scene) {
+    const SceneCounts counts = halfSeen(scene);
+    return rimOf(scene, counts.picture.height / (2 * std::tan(counts.camera.verticalFov / 2)))
+        .size();
+  }
+
+  // In grid steps, which are those of the world here.
+  static constexpr glm::dvec3 kEye{8'000, 8'000, 40'000};
 };
 
 TEST_F(SeenRimTest, IsSplitOnceAllThatIsSeenIs) {
@@ -87,15 +101,42 @@ TEST_F(SeenRimTest, IsSplitOnceAllThatIsSeenIs) {
   EXPECT_EQ(with.status().finalShare, 1);
 }
 
-TEST_F(SeenRimTest, IsThatOfWhatCoversMoreThanAPixel) {
+TEST_F(SeenRimTest, HasEdgesToTheSeenThatAreLongEnoughToShow) {
   SceneReceiver seen(scene(), untilSettled(false), transport_);
   settle(seen);
   const SelectivelyRefinedMesh& mesh = *seen.receiver(0).mesh();
-  const auto rim = openRim(mesh, halfSeen(seen, 2).meshes[0].pixels);
-  EXPECT_GT(rim.size(), 10U);
-  EXPECT_EQ(openRim(mesh, halfSeen(seen, 1).meshes[0].pixels).size(), 0U);
-  for (const VertexSlot slot : rim)
-    EXPECT_EQ(halfSeen(seen).meshes[0].pixels[slot], 0U) << "seen, so not the rim";
+  const std::vector<uint32_t> pixels = halfSeen(seen).meshes[0].pixels;
+  const auto longest = [&](VertexSlot slot, double pixelsAtOne) {
+    const auto at = [&](VertexSlot v) {
+      const GridPosition& p = mesh.positions()[v];
+      return glm::dvec3(p[0], p[1], p[2]);
+    };
+    double most = 0;
+    mesh.edges().forEachOutgoing(slot, [&](HalfEdge edge) {
+      const VertexSlot next = mesh.edges().destination(edge);
+      if (pixels[next] > 0) most = std::max(most, glm::distance(at(slot), at(next)));
+    });
+    return most * pixelsAtOne / glm::distance(kEye, at(slot));
+  };
+  std::vector<double> lengths;
+  for (const VertexSlot slot : rimOf(seen, 1e6)) lengths.push_back(longest(slot, 1));
+  ASSERT_GT(lengths.size(), 10U);
+  std::sort(lengths.begin(), lengths.end());
+  const double halfShow = 2 / lengths[lengths.size() / 2];
+  size_t last = SIZE_MAX;
+  for (const double pixelsAtOne : {1e6, halfShow, 1.0}) {
+    const std::vector<VertexSlot> rim = rimOf(seen, pixelsAtOne);
+    std::vector<VertexSlot> expected;
+    for (VertexSlot slot = 0; slot < mesh.vertexSlotCount(); ++slot) {
+      const NodeIndex node = mesh.nodeAt(slot);
+      if (node == kNone || mesh.isLeaf(node) || mesh.isVirtual(node) || pixels[slot] > 0) continue;
+      if (longest(slot, pixelsAtOne) >= 2) expected.push_back(slot);
+    }
+    EXPECT_EQ(rim, expected) << pixelsAtOne;
+    EXPECT_LT(rim.size(), last) << "as many with edges that are shorter: " << pixelsAtOne;
+    last = rim.size();
+  }
+  EXPECT_EQ(last, 0U);
 }
 
 TEST_F(SeenRimTest, WaitsForWhatIsSeen) {
@@ -111,7 +152,7 @@ TEST_F(SeenRimTest, WaitsForWhatIsSeen) {
   scene.rank(counts);
   ASSERT_EQ(transport_.held.size(), 1U);
   const SelectivelyRefinedMesh& mesh = *scene.receiver(0).mesh();
-  ASSERT_GT(openRim(mesh, counts.meshes[0].pixels).size(), 0U);
+  ASSERT_GT(openAtTheRim(scene), 0U);
   for (const NodeId& id : requested(transport_.held[0]))
     EXPECT_GT(counts.meshes[0].pixels[mesh.slot(*mesh.find(id))], 0U);
 }
