@@ -72,7 +72,7 @@ Pack::~Pack() = default;
 Result<std::shared_ptr<const Pack>> Pack::open(const std::filesystem::path& path) {
   std::error_code error;
   if (!std::filesystem::is_regular_file(path, error))
-    return fail(ErrorCode::notFound, "pack: no such file");
+    return fail(ErrorCode::notFound, "pack: there is no file " + path.string());
   auto state = std::make_unique<State>();
   if (const int status = mdb_env_create(&state->environment); status != 0)
     return openFailure(status);

@@ -139,6 +139,10 @@ class OrdersComparison {
     orders.push_back(relevelledOrder("levels by normals",
                                      "octaves of the ranks by lost normals, then pixels",
                                      mesh.pack(), mesh.normalOrder(), 1));
+    orders.push_back(relevelledLikelyErrorOrder(
+        "level x likely error, by distance in eighths",
+        "level x likely error with eighths of octaves of the view-independent order's ranks",
+        mesh.pack(), mesh.errorOrder(), 8));
     return orders;
   }
   [[nodiscard]] static std::vector<NamedList> listsFor(const EvaluatedMesh& mesh) {

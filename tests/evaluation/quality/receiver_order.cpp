@@ -78,13 +78,18 @@ double likelyError(const RankContext& context, const Candidate& candidate, doubl
   return inside + contrast * shape.silhouettePixels * sagitta;
 }
 
+// log2 of it.
+double errorOctaves(const RankContext& context, const Candidate& candidate) {
+  return std::log2(likelyError(context, candidate, 4) + 1e-6);
+}
+
 }  // namespace
 
 ReceiverOrder likelyErrorOrder() {
   return scoredOrder("level x likely error",
                      "what normals and silhouettes tell, halved for each level",
                      [](const RankContext& context, const Candidate& c) {
-                       return std::log2(likelyError(context, c, 4) + 1e-6) - c.level;
+                       return errorOctaves(context, c) - c.level;
                      });
 }
 
@@ -127,18 +132,46 @@ std::vector<ReceiverOrder> furtherOrders() {
   return orders;
 }
 
-ReceiverOrder relevelledOrder(std::string name, std::string what, const PackRecords& pack,
-                              std::span<const RecordIndex> order, double levelsAnOctave) {
+namespace {
+
+// By record.
+using FineLevels = std::shared_ptr<const std::vector<float>>;
+
+FineLevels levelsByRank(const PackRecords& pack, std::span<const RecordIndex> order,
+                        double levelsAnOctave) {
   const auto levels = std::make_shared<std::vector<float>>(pack.records().size());
   const double roots = std::max<double>(1, static_cast<double>(pack.base().roots.size()));
   for (size_t rank = 0; rank < order.size(); ++rank)
     (*levels)[order[rank]] = static_cast<float>(
         std::floor(levelsAnOctave * std::log2((roots + static_cast<double>(rank)) / roots)));
+  return levels;
+}
+
+}  // namespace
+
+ReceiverOrder relevelledOrder(std::string name, std::string what, const PackRecords& pack,
+                              std::span<const RecordIndex> order, double levelsAnOctave) {
+  const FineLevels levels = levelsByRank(pack, order, levelsAnOctave);
   ReceiverOrder made = scoredOrder(std::move(name), std::move(what),
                                    [levels](const RankContext& context, const Candidate& c) {
                                      const RecordIndex record = context.refined.recordOf(c.node);
                                      return std::log2(c.pixels) / 32 - (*levels)[record];
                                    });
+  made.oracle = true;
+  return made;
+}
+
+ReceiverOrder relevelledLikelyErrorOrder(std::string name, std::string what,
+                                         const PackRecords& pack,
+                                         std::span<const RecordIndex> order,
+                                         double levelsAnOctave) {
+  const FineLevels levels = levelsByRank(pack, order, levelsAnOctave);
+  ReceiverOrder made =
+      scoredOrder(std::move(name), std::move(what),
+                  [levels, levelsAnOctave](const RankContext& context, const Candidate& c) {
+                    const RecordIndex record = context.refined.recordOf(c.node);
+                    return errorOctaves(context, c) - (*levels)[record] / levelsAnOctave;
+                  });
   made.oracle = true;
   return made;
 }

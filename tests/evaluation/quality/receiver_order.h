@@ -50,5 +50,11 @@ using CandidateScore = std::function<double(const RankContext&, const Candidate&
                                             const PackRecords& pack,
                                             std::span<const RecordIndex> order,
                                             double levelsAnOctave);
+// likelyErrorOrder() with such levels in the place of the records' own: what records that told
+// their error as finely as `levelsAnOctave` would bring beside what the viewer sees for itself.
+[[nodiscard]] ReceiverOrder relevelledLikelyErrorOrder(std::string name, std::string what,
+                                                       const PackRecords& pack,
+                                                       std::span<const RecordIndex> order,
+                                                       double levelsAnOctave);
 
 }  // namespace meshfront::evaluation
