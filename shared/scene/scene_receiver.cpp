@@ -198,32 +198,50 @@ SeenPixels SceneReceiver::takePixels(const SceneCounts& counts) {
     const SeenPixels seen = seenPixels(*mesh.receiver->mesh(), mesh.pixels);
     sum.all += seen.all;
     sum.open += seen.open;
+    sum.nodes += seen.nodes;
     sum.openNodes += seen.openNodes;
   }
   return sum;
 }
 
-// A pixel for each vertex of the rims, as soon as that takes nothing from what is seen: when all of
-// that is split, or when the little that is left goes into one request together with the rims, so
-// that their generations take no round trips of their own.
+// A pixel for each vertex of the rims: where they join what is seen, or as soon as that takes
+// nothing from it, when all of it is split, or when the little that is left goes into one request
+// together with the rims, so that their generations take no round trips of their own.
 bool SceneReceiver::addRims(const SeenPixels& seen, const SceneCounts& counts) {
-  if (!options_.rim || seen.open * kOpenBesideRim > seen.all) return false;
+  for (MeshOfScene& mesh : meshes_) mesh.rim.clear();
+  if (!options_.rim) return false;
+  const bool join = rimJoins(seen) && rimsMayJoin(seen);
+  if (!join && seen.open * kOpenBesideRim > seen.all) return false;
   size_t nodes = seen.openNodes;
   for (MeshOfScene& mesh : meshes_) {
-    mesh.rim.clear();
-    if (const auto* front = mesh.receiver->mesh())
-      mesh.rim =
-          openRim(*front, mesh.pixels,
-                  onGrid(counts.camera.eye, mesh.placed, mesh.receiver->metadata()->quantization),
-                  pixelsAtOne(counts));
+    const SelectivelyRefinedMesh* front = mesh.receiver->mesh();
+    if (front == nullptr) continue;
+    const Quantization& grid = mesh.receiver->metadata()->quantization;
+    mesh.rim = openRim(*front, mesh.pixels, onGrid(counts.camera.eye, mesh.placed, grid),
+                       pixelsAtOne(counts));
     nodes += mesh.rim.size();
   }
-  if (seen.open > 0 && nodes > batchNow()) return false;
+  const bool fits = seen.open == 0 || nodes <= batchNow();
   // Nobody's room is taken for it.
-  if (hasBudgets() && !budgeted_.empty() && budget_.splitsAllowed() < nodes) return false;
+  const bool hasRoom = !hasBudgets() || budgeted_.empty() || budget_.splitsAllowed() >= nodes;
+  if (!join && !(fits && hasRoom)) {
+    for (MeshOfScene& mesh : meshes_) mesh.rim.clear();
+    return false;
+  }
   for (MeshOfScene& mesh : meshes_)
     for (const VertexSlot slot : mesh.rim) mesh.pixels[slot] = 1;
   return nodes > seen.openNodes;
+}
+
+// Not where room may become scarce: it is that of what is seen.
+bool SceneReceiver::rimsMayJoin(const SeenPixels& seen) const {
+  if (!ranksByLikelyError() || options_.limits.triangles != UINT64_MAX) return false;
+  if (!hasBudgets()) return true;
+  uint64_t splits = 0;
+  for (const MeshOfScene& mesh : meshes_)
+    if (const auto* metadata = mesh.receiver->metadata()) splits += metadata->splitCount;
+  // What covers so many pixels does not need more vertices.
+  return !budgeted_.empty() && budget_.splitsAllowed() >= std::min(splits, seen.all / 3);
 }
 
 void SceneReceiver::liftAll(const SceneCounts& counts) {
@@ -236,6 +254,9 @@ void SceneReceiver::liftAll(const SceneCounts& counts) {
     if (!ranksByLikelyError()) continue;
     liftByLikelyError(*front, mesh.pixels, onGrid(counts.camera.eye, mesh.placed, grid),
                       pixelsAtOne(counts), mesh.lift);
+    for (const VertexSlot slot : mesh.rim)
+      mesh.lift[slot] =
+          static_cast<uint8_t>(mesh.lift[slot] - std::min(mesh.lift[slot], kRimLevelsBehind));
   }
 }
 

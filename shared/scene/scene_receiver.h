@@ -39,8 +39,10 @@ struct SceneOptions {
   ReceiverOptions receiver;  // of each mesh; its onArrival is called for all
   Foveation foveation{.on = false};
   FrontLimits limits;  // of all meshes; without any nothing is collapsed
-  // When all that is seen is split, the rim is (seen_rim.h), so far as the limits leave room: a
-  // settled view then looks more like the published mesh, and needs nothing when it comes back.
+  // The rim is split, too (seen_rim.h), so far as the limits leave room: a settled view then looks
+  // more like the published mesh, and needs nothing when it comes back. It comes last; where the
+  // order is by significance and there is room for all, it is ranked with what is seen as soon as
+  // that is fine enough.
   bool rim = true;
 };
 
@@ -103,6 +105,7 @@ class SceneReceiver {
   void bringUpToDate(MeshOfScene& mesh, const MeshCounts& counts);
   SeenPixels takePixels(const SceneCounts& counts);
   bool addRims(const SeenPixels& seen, const SceneCounts& counts);
+  [[nodiscard]] bool rimsMayJoin(const SeenPixels& seen) const;
   [[nodiscard]] size_t batchNow() const;
   void liftAll(const SceneCounts& counts);
   void rankAhead(const SceneCounts& counts);

@@ -43,7 +43,7 @@ class SeenRimTest : public ReceiverTest {
 
   // Of the torus one half is seen: what lies beyond its middle in x. Its edges are some ten pixels
   // long.
-  static SceneCounts halfSeen(const SceneReceiver& scene, uint32_t pixels = 1) {
+  static SceneCounts halfSeen(const SceneReceiver& scene, uint32_t pixels = kCoarse) {
     SceneCounts counts;
     counts.camera.eye = kEye;
     counts.picture = {1'000, 1'000};
@@ -82,6 +82,32 @@ class SeenRimTest : public ReceiverTest {
     const SceneCounts counts = halfSeen(scene);
     return rimOf(scene, counts.picture.height / (2 * std::tan(counts.camera.verticalFov / 2)))
         .size();
+  }
+
+  // What each seen vertex covers: so much that the rim comes last, or so little that it joins.
+  static constexpr uint32_t kCoarse = 2 * kRimJoinsAtPixels;
+  static constexpr uint32_t kFine = kRimJoinsAtPixels;
+
+  // Requests that hold some of the rim while some of what is seen is neither split nor asked for.
+  size_t requestsWithRimAhead(const SceneOptions& options, uint32_t pixels) {
+    size_t ahead = 0;
+    SceneReceiver scene(this->scene(), options, transport_);
+    for (int i = 0; i < 1'000 && scene.isAtWork(); ++i) {
+      if (!transport_.held.empty()) transport_.answer(service_);
+      scene.advance();
+      if (scene.receiver(0).mesh() == nullptr || !scene.wantsRanking()) continue;
+      const SceneCounts counts = halfSeen(scene, pixels);
+      scene.rank(counts);
+      if (transport_.held.empty()) continue;
+      const SelectivelyRefinedMesh& mesh = *scene.receiver(0).mesh();
+      size_t seen = 0;
+      size_t rim = 0;
+      for (const NodeId& id : requested(transport_.held[0]))
+        ++(counts.meshes[0].pixels[mesh.slot(*mesh.find(id))] > 0 ? seen : rim);
+      ahead += rim > 0 && seen < seenPixels(mesh, counts.meshes[0].pixels).openNodes ? 1 : 0;
+    }
+    EXPECT_EQ(scene.status().state, ReceiverState::settled);
+    return ahead;
   }
 
   // In grid steps, which are those of the world here.
@@ -148,7 +174,7 @@ TEST_F(SeenRimTest, WaitsForWhatIsSeen) {
     transport_.answer(service_);
     scene.advance();
   }
-  const SceneCounts counts = halfSeen(scene, 100);
+  const SceneCounts counts = halfSeen(scene);
   scene.rank(counts);
   ASSERT_EQ(transport_.held.size(), 1U);
   const SelectivelyRefinedMesh& mesh = *scene.receiver(0).mesh();
@@ -186,6 +212,31 @@ TEST_F(SeenRimTest, ComesAlongOnlyWithAllThatIsSeen) {
     EXPECT_EQ(scene.status().state, ReceiverState::settled) << batch;
   }
   EXPECT_GT(mixed, 0U);
+}
+
+TEST_F(SeenRimTest, JoinsWhatIsSeenInAFinePicture) {
+  SceneOptions options = untilSettled(true);
+  options.receiver.batch = 40;
+  options.receiver.window = 1;
+  EXPECT_GT(requestsWithRimAhead(options, kFine), 2U);
+  EXPECT_EQ(requestsWithRimAhead(options, kFine + 1), 0U);
+  options.limits.bytes = uint64_t{1} << 30;  // room for all
+  EXPECT_GT(requestsWithRimAhead(options, kFine), 2U);
+}
+
+TEST_F(SeenRimTest, ComesLastWhereRoomMayBeScarceOrPixelsAloneCount) {
+  SceneOptions options = untilSettled(true);
+  options.receiver.batch = 40;
+  options.receiver.window = 1;
+  SceneOptions triangles = options;
+  triangles.limits.triangles = 2 * service_.mesh().triangles.size();
+  EXPECT_EQ(requestsWithRimAhead(triangles, kFine), 0U);
+  SceneOptions pixels = options;
+  pixels.receiver.order = RankOrder::pixels;
+  EXPECT_EQ(requestsWithRimAhead(pixels, kFine), 0U);
+  SceneOptions without = options;
+  without.rim = false;
+  EXPECT_EQ(requestsWithRimAhead(without, kFine), 0U);
 }
 
 TEST_F(SeenRimTest, TakesNoRoomThatABudgetDoesNotHave) {

@@ -80,6 +80,7 @@ class WaysComparison {
 
   Result<void> compareView(EvaluatedMesh& mesh, const SenderModel& model,
                            const EvaluatedView& view) {
+    if (Result<void> done = splitSeen(mesh, view); !done) return done;
     auto ours = followOurs(mesh, view);
     if (!ours) return tl::unexpected(ours.error());
     CurveOptions curve = curveOptions();
@@ -132,45 +133,38 @@ class WaysComparison {
     return options;
   }
 
-  // Ours also tells what the others are shown at, and what is left when all that is seen is split.
+  // Ours also tells what the others are shown at.
   Result<Reached> followOurs(EvaluatedMesh& mesh, const EvaluatedView& view) {
-    ReceiverWayOptions receiver = receiverOptions(mesh);
-    receiver.goal = ReceiverGoal::seen;
     auto way = ReceiverWay::create(mesh.pack(), shippedOrder(RankOrder::significance), easel_,
-                                   view.view, receiver);
+                                   view.view, receiverOptions(mesh));
     if (!way) return tl::unexpected(way.error());
     CurveOptions curve = curveOptions();
     curve.pictureAtPsnr = kMainTarget;
     auto followed = followCurve(**way, view.full, curve);
     if (!followed) return tl::unexpected(followed.error());
-    for (const auto& [goal, after] :
-         {std::pair(ReceiverGoal::seen, kSeen),
-          std::pair(ReceiverGoal::touching, "all that is seen and what touches it is split"),
-          std::pair(ReceiverGoal::all, "")}) {
-      if (goal != ReceiverGoal::seen) (*way)->goOn(goal);
-      if (Result<void> done = goOnWith(goal, view, **way, followed->curve); !done)
-        return tl::unexpected(done.error());
-      if (goal == ReceiverGoal::all) break;
-      if (Result<void> done = addVisibleOnly(mesh, view, **way, after); !done)
-        return tl::unexpected(done.error());
-    }
     Reached reached = noted(mesh, view, kOurs, followed->curve);
     keep(reached, kOurs, *followed);
     return reached;
   }
 
-  // To the way's goal, and the curve as far as it is wanted.
-  Result<void> goOnWith(ReceiverGoal goal, const EvaluatedView& view, Way& way,
-                        QualityCurve& curve) {
-    if (curve.back().psnr < options_.stopAt) {
-      auto further = followCurve(way, view.full, curveOptions());
-      if (!further) return tl::unexpected(further.error());
-      for (const CurvePoint& point : further->curve)
-        if (point.bytesDown > curve.back().bytesDown) curve.push_back(point);
-      if (further->ended) return {};
+  // What is left when only what is seen is split.
+  Result<void> splitSeen(EvaluatedMesh& mesh, const EvaluatedView& view) {
+    ReceiverWayOptions receiver = receiverOptions(mesh);
+    receiver.goal = ReceiverGoal::seen;
+    receiver.rim = false;
+    auto way = ReceiverWay::create(mesh.pack(), shippedOrder(RankOrder::significance), easel_,
+                                   view.view, receiver);
+    if (!way) return tl::unexpected(way.error());
+    for (const auto& [goal, after] :
+         {std::pair(ReceiverGoal::seen, kSeen),
+          std::pair(ReceiverGoal::touching, "all that is seen and what touches it is split")}) {
+      if (goal != ReceiverGoal::seen) (*way)->goOn(goal);
+      if (Result<void> done = toGoal(**way); !done) return done;
+      if (Result<void> done = addVisibleOnly(mesh, view, **way, after); !done) return done;
     }
-    return goal == ReceiverGoal::all ? Result<void>() : toGoal(way);
+    return {};
   }
+
   static Result<void> toGoal(Way& way) {
     for (;;) {
       const Result<bool> more = way.advance(0);

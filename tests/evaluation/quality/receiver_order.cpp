@@ -29,7 +29,7 @@ ReceiverOrder scoredOrder(std::string name, std::string what, CandidateScore sco
     for (size_t i = 0; i < count; ++i) kept.push_back(candidates[scores[i].second]);
     candidates = std::move(kept);
   };
-  return {std::move(name), std::move(what), false, keep};
+  return {std::move(name), std::move(what), false, false, keep};
 }
 
 ReceiverOrder shippedOrder(RankOrder order) {
@@ -44,6 +44,7 @@ ReceiverOrder shippedOrder(RankOrder order) {
   }
   shipped.name = "level, likely error, pixels";
   shipped.what = "level less the likely error in levels, then pixels covered, as shipped";
+  shipped.withRim = true;
   shipped.keepFirst = [](const RankContext& context, std::vector<Candidate>& candidates,
                          size_t count) {
     std::vector<uint8_t> lift;
@@ -86,11 +87,13 @@ double errorOctaves(const RankContext& context, const Candidate& candidate) {
 }  // namespace
 
 ReceiverOrder likelyErrorOrder() {
-  return scoredOrder("level x likely error",
-                     "what normals and silhouettes tell, halved for each level",
-                     [](const RankContext& context, const Candidate& c) {
-                       return errorOctaves(context, c) - c.level;
-                     });
+  ReceiverOrder made = scoredOrder("level x likely error",
+                                   "what normals and silhouettes tell, halved for each level",
+                                   [](const RankContext& context, const Candidate& c) {
+                                     return errorOctaves(context, c) - c.level;
+                                   });
+  made.withRim = true;
+  return made;
 }
 
 std::vector<ReceiverOrder> furtherOrders() {
@@ -173,6 +176,7 @@ ReceiverOrder relevelledLikelyErrorOrder(std::string name, std::string what,
                     return errorOctaves(context, c) - (*levels)[record] / levelsAnOctave;
                   });
   made.oracle = true;
+  made.withRim = true;
   return made;
 }
 

@@ -26,9 +26,10 @@ struct RankContext {
 };
 
 struct ReceiverOrder {
-  std::string name;     // of a row
-  std::string what;     // a line
-  bool oracle = false;  // goes by what no receiver can know beforehand
+  std::string name;      // of a row
+  std::string what;      // a line
+  bool oracle = false;   // goes by what no receiver can know beforehand
+  bool withRim = false;  // ranks the rim with what is seen (shared/scene/seen_rim.h)
   // Leaves the `count` best ones, best first.
   std::function<void(const RankContext&, std::vector<Candidate>&, size_t count)> keepFirst;
 };

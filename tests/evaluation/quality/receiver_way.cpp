@@ -5,6 +5,8 @@
 
 #include "shared/receiver/first_request.h"
 #include "shared/receiver/request_budget.h"
+#include "shared/scene/seen_rim.h"
+#include "tests/evaluation/quality/ring_shape.h"
 
 namespace meshfront::evaluation {
 namespace {
@@ -62,17 +64,21 @@ Result<bool> ReceiverWay::advance(uint64_t) {
 
 // Fresh counts; sends what there is room for.
 Result<void> ReceiverWay::rank() {
-  const auto pixels = canvas_.count();
-  if (!pixels) return tl::unexpected(pixels.error());
+  const auto counted = canvas_.count();
+  if (!counted) return tl::unexpected(counted.error());
+  const std::vector<uint32_t> pixels = pixelsWithRim(*counted);
   busy_.resize(refined_.mesh().nodeCount(), 0);
-  std::vector<Candidate> candidates = visibleCandidates(refined_.mesh(), *pixels, busy_);
+  std::vector<Candidate> candidates = visibleCandidates(refined_.mesh(), pixels, busy_);
+  for (Candidate& candidate : candidates)
+    if ((*counted)[candidate.slot] == 0)
+      candidate.level = static_cast<uint8_t>(candidate.level + kRimLevelsBehind);
   std::erase_if(candidates, [this](const Candidate& c) { return !isAllowed(c.node); });
   size_t batch =
       options_.batch > 0 ? options_.batch : adaptiveBatch(refined_.mesh().splitsApplied());
-  const RankContext context{refined_, *pixels, canvas_.view(), canvas_.easel().size()};
+  const RankContext context{refined_, pixels, canvas_.view(), canvas_.easel().size()};
   if (candidates.empty() && flights_.empty()) {
     if (goal_ == ReceiverGoal::seen) return {};
-    candidates = restCandidates(*pixels);
+    candidates = restCandidates(*counted);
     batch = std::max(batch, kRestBatch);
     meshfront::keepFirst(candidates, batch, RankOrder::significance);
   } else {
@@ -85,6 +91,19 @@ Result<void> ReceiverWay::rank() {
     next += count;
   }
   return {};
+}
+
+// A pixel for each vertex of the rim, where it joins.
+std::vector<uint32_t> ReceiverWay::pixelsWithRim(std::span<const uint32_t> pixels) const {
+  std::vector<uint32_t> all(pixels.begin(), pixels.end());
+  const SelectivelyRefinedMesh& mesh = refined_.mesh();
+  if (!order_.withRim || !options_.rim || !rimJoins(seenPixels(mesh, pixels))) return all;
+  const Camera& camera = canvas_.view().camera;
+  const glm::dvec3 eye = eyeOnGrid(camera, refined_.pack().metadata().quantization);
+  for (const VertexSlot slot :
+       openRim(mesh, pixels, eye, pixelsAtOne(camera, canvas_.easel().size())))
+    all[slot] = 1;
+  return all;
 }
 
 // What has an edge to something seen, if there is any, else all if that is wanted.

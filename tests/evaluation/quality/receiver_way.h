@@ -29,6 +29,7 @@ struct ReceiverWayOptions {
   // By record: 0 = a leaf as far as this way goes. Empty: all are there.
   std::span<const uint8_t> allowed{};
   ReceiverGoal goal = ReceiverGoal::all;
+  bool rim = true;  // ranked with what is seen, where the order has it so
 };
 
 class ReceiverWay final : public Way {
@@ -52,6 +53,7 @@ class ReceiverWay final : public Way {
   ReceiverWay(RefinedPack refined, const ReceiverOrder& order, Easel& easel,
               const EvaluationView& view, const ReceiverWayOptions& options);
   Result<void> rank();
+  [[nodiscard]] std::vector<uint32_t> pixelsWithRim(std::span<const uint32_t> pixels) const;
   Result<void> send(std::span<const Candidate> chosen);
   [[nodiscard]] std::vector<Candidate> restCandidates(std::span<const uint32_t> pixels) const;
   void addDescendants(Flight& flight, unsigned significance) const;
