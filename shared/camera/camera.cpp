@@ -29,6 +29,10 @@ glm::dvec3 rotated(const glm::dvec3& v, const glm::dvec3& axis, double angle) {
 
 }  // namespace
 
+double pixelsAtOne(const Camera& camera, PixelSize picture) {
+  return picture.height / (2 * std::tan(camera.verticalFov / 2));
+}
+
 ViewAxes viewAxes(const Camera& camera) {
   ViewAxes axes{};
   const glm::dvec3 toTarget = camera.target - camera.eye;

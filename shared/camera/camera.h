@@ -32,6 +32,9 @@ struct Camera {
   bool operator==(const Camera&) const = default;
 };
 
+// Of a length seen from as far away as it is long, across the view.
+[[nodiscard]] double pixelsAtOne(const Camera& camera, PixelSize picture);
+
 // Unit vectors of the view; right x upward = -forward. Also defined when `up` is along the view.
 struct ViewAxes {
   glm::dvec3 right;

@@ -1,7 +1,6 @@
 #include "shared/scene/scene_receiver.h"
 
 #include <algorithm>
-#include <cmath>
 #include <glm/matrix.hpp>
 #include <utility>
 
@@ -56,11 +55,6 @@ void add(ReceiverStatistics& sum, const ReceiverStatistics& one) {
 glm::dvec3 onGrid(const glm::dvec3& world, const SceneMesh& mesh, const Quantization& grid) {
   const glm::dvec3 point(glm::inverse(mesh.worldFromMesh) * glm::dvec4(world, 1));
   return (point - glm::dvec3(grid.origin[0], grid.origin[1], grid.origin[2])) / grid.step;
-}
-
-// Of a length seen from as far away as it is long.
-double pixelsAtOne(const SceneCounts& counts) {
-  return counts.picture.height / (2 * std::tan(counts.camera.verticalFov / 2));
 }
 
 }  // namespace
@@ -218,19 +212,22 @@ bool SceneReceiver::addRims(const SeenPixels& seen, const SceneCounts& counts) {
     if (front == nullptr) continue;
     const Quantization& grid = mesh.receiver->metadata()->quantization;
     mesh.rim = openRim(*front, mesh.pixels, onGrid(counts.camera.eye, mesh.placed, grid),
-                       pixelsAtOne(counts));
+                       pixelsAtOne(counts.camera, counts.picture));
     nodes += mesh.rim.size();
   }
-  const bool fits = seen.open == 0 || nodes <= batchNow();
-  // Nobody's room is taken for it.
-  const bool hasRoom = !hasBudgets() || budgeted_.empty() || budget_.splitsAllowed() >= nodes;
-  if (!join && !(fits && hasRoom)) {
+  if (!join && !rimsFitLast(seen, nodes)) {
     for (MeshOfScene& mesh : meshes_) mesh.rim.clear();
     return false;
   }
   for (MeshOfScene& mesh : meshes_)
     for (const VertexSlot slot : mesh.rim) mesh.pixels[slot] = 1;
   return nodes > seen.openNodes;
+}
+
+// `nodes`: what is open of rims and of what is seen. Nobody's room is taken for the rims.
+bool SceneReceiver::rimsFitLast(const SeenPixels& seen, size_t nodes) const {
+  if (seen.open > 0 && nodes > batchNow()) return false;
+  return !hasBudgets() || budgeted_.empty() || budget_.splitsAllowed() >= nodes;
 }
 
 // Not where room may become scarce: it is that of what is seen.
@@ -253,7 +250,7 @@ void SceneReceiver::liftAll(const SceneCounts& counts) {
            options_.foveation, spot_, mesh.lift);
     if (!ranksByLikelyError()) continue;
     liftByLikelyError(*front, mesh.pixels, onGrid(counts.camera.eye, mesh.placed, grid),
-                      pixelsAtOne(counts), mesh.lift);
+                      pixelsAtOne(counts.camera, counts.picture), mesh.lift);
     for (const VertexSlot slot : mesh.rim)
       mesh.lift[slot] =
           static_cast<uint8_t>(mesh.lift[slot] - std::min(mesh.lift[slot], kRimLevelsBehind));

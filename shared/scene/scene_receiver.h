@@ -105,6 +105,7 @@ class SceneReceiver {
   void bringUpToDate(MeshOfScene& mesh, const MeshCounts& counts);
   SeenPixels takePixels(const SceneCounts& counts);
   bool addRims(const SeenPixels& seen, const SceneCounts& counts);
+  [[nodiscard]] bool rimsFitLast(const SeenPixels& seen, size_t nodes) const;
   [[nodiscard]] bool rimsMayJoin(const SeenPixels& seen) const;
   [[nodiscard]] size_t batchNow() const;
   void liftAll(const SceneCounts& counts);

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <climits>
-#include <cmath>
 #include <glm/geometric.hpp>
 
 #include "shared/scene/scene_receiver.h"
@@ -80,18 +79,25 @@ class SeenRimTest : public ReceiverTest {
   }
   static size_t openAtTheRim(const SceneReceiver& scene) {
     const SceneCounts counts = halfSeen(scene);
-    return rimOf(scene, counts.picture.height / (2 * std::tan(counts.camera.verticalFov / 2)))
-        .size();
+    return rimOf(scene, pixelsAtOne(counts.camera, counts.picture)).size();
   }
 
   // What each seen vertex covers: so much that the rim comes last, or so little that it joins.
   static constexpr uint32_t kCoarse = 2 * kRimJoinsAtPixels;
   static constexpr uint32_t kFine = kRimJoinsAtPixels;
 
-  // Requests that hold some of the rim while some of what is seen is neither split nor asked for.
-  size_t requestsWithRimAhead(const SceneOptions& options, uint32_t pixels) {
-    size_t ahead = 0;
+  // Of a request's nodes; `open`: of all that is seen, those that can still be split.
+  struct Asked {
+    size_t seen = 0;
+    size_t rim = 0;
+    size_t open = 0;
+  };
+  // One request at a time, until the scene settles.
+  std::vector<Asked> requestsOf(SceneOptions options, uint32_t batch, uint32_t pixels) {
+    options.receiver.batch = batch;
+    options.receiver.window = 1;
     SceneReceiver scene(this->scene(), options, transport_);
+    std::vector<Asked> requests;
     for (int i = 0; i < 1'000 && scene.isAtWork(); ++i) {
       if (!transport_.held.empty()) transport_.answer(service_);
       scene.advance();
@@ -100,14 +106,20 @@ class SeenRimTest : public ReceiverTest {
       scene.rank(counts);
       if (transport_.held.empty()) continue;
       const SelectivelyRefinedMesh& mesh = *scene.receiver(0).mesh();
-      size_t seen = 0;
-      size_t rim = 0;
+      Asked& asked = requests.emplace_back();
+      asked.open = seenPixels(mesh, counts.meshes[0].pixels).openNodes;
       for (const NodeId& id : requested(transport_.held[0]))
-        ++(counts.meshes[0].pixels[mesh.slot(*mesh.find(id))] > 0 ? seen : rim);
-      ahead += rim > 0 && seen < seenPixels(mesh, counts.meshes[0].pixels).openNodes ? 1 : 0;
+        ++(counts.meshes[0].pixels[mesh.slot(*mesh.find(id))] > 0 ? asked.seen : asked.rim);
     }
-    EXPECT_EQ(scene.status().state, ReceiverState::settled);
-    return ahead;
+    EXPECT_EQ(scene.status().state, ReceiverState::settled) << batch;
+    return requests;
+  }
+  // Those with some of the rim while some of what is seen is neither split nor asked for.
+  size_t requestsWithRimAhead(const SceneOptions& options, uint32_t pixels) {
+    const std::vector<Asked> requests = requestsOf(options, 40, pixels);
+    return static_cast<size_t>(std::count_if(requests.begin(), requests.end(), [](const Asked& a) {
+      return a.rim > 0 && a.seen < a.open;
+    }));
   }
 
   // In grid steps, which are those of the world here.
@@ -187,37 +199,17 @@ TEST_F(SeenRimTest, WaitsForWhatIsSeen) {
 TEST_F(SeenRimTest, ComesAlongOnlyWithAllThatIsSeen) {
   size_t mixed = 0;
   for (uint32_t batch = 20; batch <= 160; batch += 5) {
-    SceneOptions options = untilSettled(true);
-    options.receiver.batch = batch;
-    options.receiver.window = 1;
-    SceneReceiver scene(this->scene(), options, transport_);
-    for (int i = 0; i < 1'000 && scene.isAtWork(); ++i) {
-      if (!transport_.held.empty()) transport_.answer(service_);
-      scene.advance();
-      if (scene.receiver(0).mesh() == nullptr || !scene.wantsRanking()) continue;
-      const SceneCounts counts = halfSeen(scene);
-      scene.rank(counts);
-      if (transport_.held.empty()) continue;
-      const SelectivelyRefinedMesh& mesh = *scene.receiver(0).mesh();
-      const size_t open = seenPixels(mesh, counts.meshes[0].pixels).openNodes;
-      size_t seen = 0;
-      size_t rim = 0;
-      for (const NodeId& id : requested(transport_.held[0]))
-        ++(counts.meshes[0].pixels[mesh.slot(*mesh.find(id))] > 0 ? seen : rim);
-      if (rim > 0) {
-        EXPECT_EQ(seen, open) << "the rim in the place of what is seen, batch " << batch;
-      }
-      mixed += rim > 0 && seen > 0 ? 1 : 0;
+    for (const Asked& asked : requestsOf(untilSettled(true), batch, kCoarse)) {
+      if (asked.rim == 0) continue;
+      EXPECT_EQ(asked.seen, asked.open) << "the rim in the place of what is seen, batch " << batch;
+      mixed += asked.seen > 0 ? 1 : 0;
     }
-    EXPECT_EQ(scene.status().state, ReceiverState::settled) << batch;
   }
   EXPECT_GT(mixed, 0U);
 }
 
 TEST_F(SeenRimTest, JoinsWhatIsSeenInAFinePicture) {
   SceneOptions options = untilSettled(true);
-  options.receiver.batch = 40;
-  options.receiver.window = 1;
   EXPECT_GT(requestsWithRimAhead(options, kFine), 2U);
   EXPECT_EQ(requestsWithRimAhead(options, kFine + 1), 0U);
   options.limits.bytes = uint64_t{1} << 30;  // room for all
@@ -225,18 +217,20 @@ TEST_F(SeenRimTest, JoinsWhatIsSeenInAFinePicture) {
 }
 
 TEST_F(SeenRimTest, ComesLastWhereRoomMayBeScarceOrPixelsAloneCount) {
-  SceneOptions options = untilSettled(true);
-  options.receiver.batch = 40;
-  options.receiver.window = 1;
-  SceneOptions triangles = options;
+  SceneOptions triangles = untilSettled(true);
   triangles.limits.triangles = 2 * service_.mesh().triangles.size();
   EXPECT_EQ(requestsWithRimAhead(triangles, kFine), 0U);
-  SceneOptions pixels = options;
+  SceneOptions pixels = untilSettled(true);
   pixels.receiver.order = RankOrder::pixels;
   EXPECT_EQ(requestsWithRimAhead(pixels, kFine), 0U);
-  SceneOptions without = options;
-  without.rim = false;
-  EXPECT_EQ(requestsWithRimAhead(without, kFine), 0U);
+  EXPECT_EQ(requestsWithRimAhead(untilSettled(false), kFine), 0U);
+  // Memory for what is seen and the rim, but not for all of the mesh.
+  SceneReceiver roomy(scene(), untilSettled(true), transport_);
+  settle(roomy);
+  SceneOptions memory = untilSettled(true);
+  memory.limits.bytes = roomy.receiver(0).mesh()->bytes();
+  // At first there are so few pixels here that their vertices have room.
+  EXPECT_LE(requestsWithRimAhead(memory, kFine), 1U);
 }
 
 TEST_F(SeenRimTest, TakesNoRoomThatABudgetDoesNotHave) {

@@ -140,11 +140,7 @@ class WaysComparison {
     if (!way) return tl::unexpected(way.error());
     CurveOptions curve = curveOptions();
     curve.pictureAtPsnr = kMainTarget;
-    auto followed = followCurve(**way, view.full, curve);
-    if (!followed) return tl::unexpected(followed.error());
-    Reached reached = noted(mesh, view, kOurs, followed->curve);
-    keep(reached, kOurs, *followed);
-    return reached;
+    return follow(mesh, view, kOurs, **way, curve);
   }
 
   // What is left when only what is seen is split.
@@ -256,9 +252,9 @@ class WaysComparison {
           mesh, view, name, "view-independent, before our first record",
           static_cast<double>(ours.atFirst), independent.bytes[1], std::nullopt,
           "metadata and base mesh alone, with their fields: no order of records can do better");
-    addRatio(mesh, view, name, "pixels alone", ours.bytes[1], pixels.bytes[1],
-             goalIf(whole, kWholeBesidePixels), "");
-    addWanted(mesh, view, "pixels alone", ours, pixels.bytes[1], goalIf(whole, kWholeBesidePixels));
+    const std::optional<double> besidePixels = goalIf(whole, kWholeBesidePixels);
+    addRatio(mesh, view, name, "pixels alone", ours.bytes[1], pixels.bytes[1], besidePixels, "");
+    addWanted(mesh, view, "pixels alone", ours, pixels.bytes[1], besidePixels);
     addRatio(mesh, view, name, "Draco's file", ours.bytes[1], fileBytes, fileGoal,
              "of the file nothing is seen before all of it is there");
   }

@@ -53,6 +53,7 @@ using CandidateScore = std::function<double(const RankContext&, const Candidate&
                                             double levelsAnOctave);
 // likelyErrorOrder() with such levels in the place of the records' own: what records that told
 // their error as finely as `levelsAnOctave` would bring beside what the viewer sees for itself.
+// (The rim, where it joins, is not a level behind then.)
 [[nodiscard]] ReceiverOrder relevelledLikelyErrorOrder(std::string name, std::string what,
                                                        const PackRecords& pack,
                                                        std::span<const RecordIndex> order,

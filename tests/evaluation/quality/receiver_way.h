@@ -1,6 +1,7 @@
 // Receiver-driven, as the viewer does it without a window: one request under way, a fresh ranking
-// after each answer, batches of adaptiveBatch(), and descendants with the first request
-// (first_request.h). Beyond what the viewer does, the order may be any.
+// after each answer, batches of adaptiveBatch(), descendants with the first request
+// (first_request.h), and the rim ranked where the viewer ranks it (shared/scene/seen_rim.h). Beyond
+// what the viewer does, the order may be any.
 #pragma once
 
 #include <deque>

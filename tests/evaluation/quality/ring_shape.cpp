@@ -1,7 +1,6 @@
 #include "tests/evaluation/quality/ring_shape.h"
 
 #include <algorithm>
-#include <cmath>
 #include <glm/geometric.hpp>
 
 namespace meshfront::evaluation {
@@ -60,10 +59,6 @@ RingShape ringShape(const SelectivelyRefinedMesh& mesh, VertexSlot slot, const g
 glm::dvec3 eyeOnGrid(const Camera& camera, const Quantization& quantization) {
   const auto& origin = quantization.origin;
   return (camera.eye - glm::dvec3(origin[0], origin[1], origin[2])) / quantization.step;
-}
-
-double pixelsAtOne(const Camera& camera, PixelSize picture) {
-  return picture.height / (2 * std::tan(camera.verticalFov / 2));
 }
 
 }  // namespace meshfront::evaluation

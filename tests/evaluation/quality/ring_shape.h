@@ -24,6 +24,5 @@ struct RingShape {
                                   const glm::dvec3& eye, double pixelsAtOne);
 
 [[nodiscard]] glm::dvec3 eyeOnGrid(const Camera& camera, const Quantization& quantization);
-[[nodiscard]] double pixelsAtOne(const Camera& camera, PixelSize picture);
 
 }  // namespace meshfront::evaluation

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cmath>
 
 #include "shared/bits/crc32c.h"
 #include "shared/receiver/ranking.h"
@@ -130,7 +129,7 @@ Result<uint64_t> DrawnClient::fetch(const Camera& camera, uint64_t& up) {
   const glm::dvec3 origin(grid.origin[0], grid.origin[1], grid.origin[2]);
   std::vector<uint8_t> lift;
   liftByLikelyError(*mesh_, *counted, (camera.eye - origin) / grid.step,
-                    kPictureSize.height / (2 * std::tan(camera.verticalFov / 2)), lift);
+                    pixelsAtOne(camera, kPictureSize), lift);
   RankingBias bias;
   bias.lift = lift;
   bias.levelsBehind = kMostErrorLift;
